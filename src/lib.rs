@@ -1,0 +1,13 @@
+//! A data-driven render graph: graphs of passes and resources in RON, shaders in WGSL, and one
+//! executor that checks, schedules, runs and reloads them.
+//!
+//! Data flows one way: files → graph (with spans) → check against reflected shaders → plan →
+//! engine → picture. Each step is a function from one value to the next, and everything up to
+//! and including the plan works without a GPU.
+
+pub mod diagnostic;
+pub mod files;
+pub mod graph;
+pub mod plan;
+pub mod scene;
+pub mod shader;
