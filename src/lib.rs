@@ -7,7 +7,9 @@
 
 pub mod diagnostic;
 pub mod files;
+pub mod format;
 pub mod graph;
 pub mod plan;
 pub mod scene;
 pub mod shader;
+pub mod syntax;

@@ -90,4 +90,12 @@ impl Sources {
         let column = source.text.get(start..end).map_or(end - start, |s| s.chars().count());
         Position { line: line as u32 + 1, column: column as u32 + 1 }
     }
+
+    /// The byte range of a line (from 0), its end of line included.
+    pub(super) fn line_bytes(&self, file: FileId, line: usize) -> Option<std::ops::Range<usize>> {
+        let source = &self.files[file.0 as usize];
+        let start = *source.line_starts.get(line)? as usize;
+        let end = source.line_starts.get(line + 1).map_or(source.text.len(), |next| *next as usize);
+        Some(start..end)
+    }
 }

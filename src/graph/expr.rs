@@ -1,0 +1,109 @@
+//! Expressions: the tree. Every node has its span inside the string of the file, so that errors
+//! point there.
+
+use super::value::Value;
+use crate::diagnostic::Span;
+
+/// An expression with its place.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Expr {
+    pub kind: ExprKind,
+    pub span: Span,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub enum ExprKind {
+    Literal(Value),
+    /// A dotted path: a name of the graph, a field of an input (`particles.radius`), an output
+    /// of a use (`sort.start`), or one of these with a component (`grid.x`). Which one it is
+    /// depends on the names around it.
+    Name(String),
+    /// A component of an expression that is not a path, such as `size(z).x`.
+    Component(Box<Expr>, char),
+    Unary(Unary, Box<Expr>),
+    Binary(Binary, Box<Expr>, Box<Expr>),
+    Call(Function, Vec<Expr>),
+    /// `(a, b)`, `(a, b, c)` or `(a, b, c, d)`.
+    Vector(Vec<Expr>),
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Unary {
+    Negate,
+    Not,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Binary {
+    Add,
+    Subtract,
+    Multiply,
+    Divide,
+    Remainder,
+    Equal,
+    NotEqual,
+    Less,
+    LessEqual,
+    Greater,
+    GreaterEqual,
+    And,
+    Or,
+}
+
+/// Functions of the expression language. The last six take a name, not a value.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Function {
+    Min,
+    Max,
+    Ceil,
+    Floor,
+    Round,
+    Log2,
+    CeilDiv,
+    NextPow2,
+    MipCount,
+    Size,
+    Count,
+    Capacity,
+    Has,
+    Device,
+}
+
+impl Function {
+    pub const ALL: &'static [(&'static str, Function)] = &[
+        ("min", Function::Min),
+        ("max", Function::Max),
+        ("ceil", Function::Ceil),
+        ("floor", Function::Floor),
+        ("round", Function::Round),
+        ("log2", Function::Log2),
+        ("ceil_div", Function::CeilDiv),
+        ("next_pow2", Function::NextPow2),
+        ("mip_count", Function::MipCount),
+        ("size", Function::Size),
+        ("count", Function::Count),
+        ("capacity", Function::Capacity),
+        ("has", Function::Has),
+        ("device", Function::Device),
+    ];
+
+    pub fn name(self) -> &'static str {
+        Self::ALL.iter().find(|(_, f)| *f == self).map_or("?", |(name, _)| name)
+    }
+}
+
+impl Expr {
+    /// Visits every name in the expression, also those that functions take.
+    pub fn names<'a>(&'a self, visit: &mut dyn FnMut(&'a str, Span)) {
+        match &self.kind {
+            ExprKind::Literal(_) => {}
+            ExprKind::Name(name) => visit(name, self.span),
+            ExprKind::Component(e, _) | ExprKind::Unary(_, e) => e.names(visit),
+            ExprKind::Binary(_, a, b) => {
+                a.names(visit);
+                b.names(visit);
+            }
+            ExprKind::Call(_, list) | ExprKind::Vector(list) => list.iter().for_each(|e| e.names(visit)),
+        }
+    }
+}

@@ -1,0 +1,92 @@
+//! Values of expressions and parameters.
+
+use std::fmt;
+
+/// A value of the expression language. Vectors are homogeneous and have 2 to 4 components.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Value {
+    Int(i64),
+    Float(f64),
+    Bool(bool),
+    /// A word of a `Choice`.
+    Word(String),
+    Vector(Vec<Value>),
+}
+
+impl Value {
+    /// What messages call the kind.
+    pub fn kind(&self) -> &'static str {
+        match self {
+            Value::Int(_) => "Int",
+            Value::Float(_) => "Float",
+            Value::Bool(_) => "Bool",
+            Value::Word(_) => "word",
+            Value::Vector(v) => match (v.first(), v.len()) {
+                (Some(Value::Int(_)), 2) => "vector of 2 Int",
+                (Some(Value::Int(_)), 3) => "vector of 3 Int",
+                (Some(Value::Int(_)), _) => "vector of 4 Int",
+                (Some(Value::Bool(_)), _) => "vector of Bool",
+                (_, 2) => "Vec2",
+                (_, 3) => "Vec3",
+                _ => "Vec4",
+            },
+        }
+    }
+
+    /// As a number, if it is a scalar number.
+    pub fn as_f64(&self) -> Option<f64> {
+        match self {
+            Value::Int(i) => Some(*i as f64),
+            Value::Float(f) => Some(*f),
+            _ => None,
+        }
+    }
+
+    /// As an integer, if it is one.
+    pub fn as_int(&self) -> Option<i64> {
+        match self {
+            Value::Int(i) => Some(*i),
+            _ => None,
+        }
+    }
+
+    pub fn as_bool(&self) -> Option<bool> {
+        match self {
+            Value::Bool(b) => Some(*b),
+            _ => None,
+        }
+    }
+
+    /// Its components; a scalar is its own single component.
+    pub fn components(&self) -> &[Value] {
+        match self {
+            Value::Vector(v) => v,
+            scalar => std::slice::from_ref(scalar),
+        }
+    }
+
+    pub fn vec(components: impl IntoIterator<Item = f64>) -> Self {
+        Value::Vector(components.into_iter().map(Value::Float).collect())
+    }
+}
+
+impl fmt::Display for Value {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Value::Int(i) => write!(f, "{i}"),
+            Value::Float(x) => write!(f, "{x:?}"),
+            Value::Bool(b) => write!(f, "{b}"),
+            Value::Word(w) => f.write_str(w),
+            Value::Vector(v) => {
+                f.write_str("(")?;
+                for (i, x) in v.iter().enumerate() {
+                    if i > 0 {
+                        f.write_str(", ")?;
+                    }
+                    write!(f, "{x}")?;
+                }
+                f.write_str(")")
+            }
+        }
+    }
+}
