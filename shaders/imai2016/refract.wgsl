@@ -1,0 +1,156 @@
+// Up to four refractions through splashes and body, in whatever order the ray meets them, with absorption along the
+// way (Imai 2016, sections 4.4 and 4.5, equations 6 to 9).
+#import "lib/background.wgsl"
+#import "lib/camera.wgsl"
+#import "lib/optics.wgsl"
+#import "lib/shell_search.wgsl"
+
+struct Params {
+    ior: f32,
+    absorption: vec3f,
+    refractions: u32,
+    secant_steps: u32,
+    march_steps: u32,
+    reach_m: f32,
+    contact_m: f32,
+    shapes_splash_radius: f32,
+}
+
+/// Where a ray is, on a surface of the body or of the splashes.
+struct Place {
+    found: bool,
+    t: f32,
+    pixel: vec2f,
+    in_body: bool,
+    // Outward, in eye space.
+    normal: vec3f,
+}
+
+var<uniform> params: Params;
+var body_z: texture_2d_array<f32>;
+var smooth_normal: texture_2d_array<f32>;
+var splash_z: texture_2d_array<f32>;
+var splash_normal: texture_2d_array<f32>;
+
+@fragment
+fn liquid(@builtin(position) position: vec4f) -> @location(0) vec4f {
+    let pixel = position.xy;
+    let texel = vec2i(pixel);
+    let first = first_surface(pixel);
+    let dry = textureLoad(dry_z, texel, 0).x;
+    if !first.found || (dry != 0.0 && dry > -first.t) {
+        return textureLoad(dry_color, texel, 0);
+    }
+    let ray = eye_ray(pixel);
+    let p = ray.origin + first.t * ray.direction;
+    return vec4f(seen_through(p, normalize(ray.direction), first), 1.0);
+}
+
+/// The nearer front of both classes on a view ray; t is -z.
+fn first_surface(pixel: vec2f) -> Place {
+    let texel = vec2i(pixel);
+    let body = textureLoad(body_z, texel, 0, 0).x;
+    let splash = textureLoad(splash_z, texel, 0, 0).x;
+    if body == 0.0 && splash == 0.0 {
+        return Place();
+    }
+    let in_body = body != 0.0 && (splash == 0.0 || body >= splash);
+    return Place(true, -select(splash, body, in_body), pixel, in_body, normal_at(in_body, 0, pixel));
+}
+
+fn normal_at(in_body: bool, layer: i32, pixel: vec2f) -> vec3f {
+    let uv = pixel / camera.viewport;
+    var normal: vec3f;
+    if in_body {
+        normal = textureSampleLevel(smooth_normal, linear_clamp, uv, layer, 0.0).xyz;
+    } else {
+        normal = textureSampleLevel(splash_normal, linear_clamp, uv, layer, 0.0).xyz;
+    }
+    let length_2 = dot(normal, normal);
+    return select(vec3f(0.0, 0.0, 1.0), normal * inverseSqrt(length_2), length_2 > 0.0);
+}
+
+/// Equations 6 to 8 as a loop over pairs of surfaces, from where the view ray meets the liquid.
+fn seen_through(start: vec3f, view: vec3f, first: Place) -> vec3f {
+    var p = start;
+    var direction = view;
+    var at = first;
+    var light = vec3f(0.0);
+    var share = vec3f(1.0);
+    for (var entered = 1u; entered <= params.refractions; entered += 2u) {
+        let outside = facing(at.normal, direction);
+        let into = bend_in(direction, outside, params.ior);
+        light += share * into.reflectance * background(p, reflect(direction, outside), params.reach_m);
+        share *= 1.0 - into.reflectance;
+        direction = into.direction;
+
+        at = way_out(p, direction, at);
+        p += at.t * direction;
+        share *= transmitted(params.absorption, at.t);
+        // Liquid that rests on something wets it: no air between, no second surface.
+        let dry = dry_z_at(at.pixel);
+        if dry != 0.0 && p.z - dry < params.contact_m {
+            return light + share * dry_over_sky(at.pixel, direction);
+        }
+        if entered == params.refractions {
+            break;
+        }
+        let inside = facing(at.normal, direction);
+        let out = bend_out(direction, inside, params.ior);
+        light += share * out.reflectance * background(p, reflect(direction, inside), params.reach_m);
+        share *= 1.0 - out.reflectance;
+        if out.reflectance == 1.0 {
+            return light;
+        }
+        direction = out.direction;
+
+        if entered + 2u > params.refractions {
+            break;
+        }
+        let next = way_in(p, direction);
+        if !next.found {
+            break;
+        }
+        at = next;
+        p += at.t * direction;
+    }
+    return light + share * background(p, direction, params.reach_m);
+}
+
+/// The normal turned against a direction; where a surface is seen from its edge it is tilted until it faces it.
+fn facing(normal: vec3f, direction: vec3f) -> vec3f {
+    let against = select(normal, -normal, dot(normal, direction) > 0.0);
+    let cosine = -dot(against, direction);
+    return normalize(against - direction * max(0.02 - cosine, 0.0));
+}
+
+/// From a point on the liquid's surface to the back of the same class.
+fn way_out(p: vec3f, direction: vec3f, from_place: Place) -> Place {
+    if from_place.in_body {
+        let back = leave_shell(body_z, p, direction, params.reach_m, params.secant_steps);
+        return Place(true, back.t, back.pixel, true, normal_at(true, 1, back.pixel));
+    }
+    let diameter = 2.0 * params.shapes_splash_radius;
+    let back = leave_shell(splash_z, p, direction, 1.05 * diameter, params.secant_steps);
+    if back.found {
+        return Place(true, back.t, back.pixel, false, normal_at(false, 1, back.pixel));
+    }
+    // The farthest back belongs to another splash behind this one, whose own back its radius tells.
+    let chord = -diameter * dot(from_place.normal, direction);
+    let normal = normalize(params.shapes_splash_radius * from_place.normal + chord * direction);
+    return Place(true, chord, pixel_from_eye(p + chord * direction), false, normal);
+}
+
+/// The next front that a ray in the air meets, of either class.
+fn way_in(p: vec3f, direction: vec3f) -> Place {
+    let body = enter_shell(body_z, p, direction, params.reach_m, params.march_steps, params.secant_steps);
+    let splash = enter_shell(splash_z, p, direction, params.reach_m, params.march_steps, params.secant_steps);
+    if !body.found && !splash.found {
+        return Place();
+    }
+    let in_body = body.found && (!splash.found || body.t <= splash.t);
+    if in_body {
+        return Place(true, body.t, body.pixel, true, normal_at(true, 0, body.pixel));
+    }
+    return Place(true, splash.t, splash.pixel, false, normal_at(false, 0, splash.pixel));
+}

@@ -1,0 +1,23 @@
+// The picture over its backdrop, exposed and tone-mapped.
+#import "lib/tone.wgsl"
+
+struct Params {
+    exposure: f32,
+    tone: u32,
+    transparent: u32,
+    brightness: f32,
+    sun_radius: f32,
+}
+
+var<uniform> params: Params;
+var color: texture_2d<f32>;
+
+/// Tone curves bend only straight colours, so coverage is divided out first and multiplied in again.
+fn presented(over: vec4f, backdrop: vec3f) -> vec4f {
+    let gain = exp2(params.exposure);
+    if params.transparent != 0u {
+        let straight = over.rgb / max(over.a, 1.0e-4);
+        return vec4f(tone_mapped(gain * straight, params.tone) * over.a, over.a);
+    }
+    return vec4f(tone_mapped(gain * (over.rgb + (1.0 - over.a) * backdrop), params.tone), 1.0);
+}

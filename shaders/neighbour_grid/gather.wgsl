@@ -1,0 +1,24 @@
+// Positions in the order of the cells, each with its particle's number.
+#import "lib/dispatch.wgsl"
+#import "lib/packed.wgsl"
+#import "lib/sorted.wgsl"
+
+struct Params {
+    particles_count: u32,
+}
+
+var<uniform> params: Params;
+var<storage, read> particles_position: array<Packed3>;
+var<storage, read> sort_pairs: array<vec2u>;
+var<storage, read_write> sorted: array<Sorted>;
+
+@compute @workgroup_size(256)
+fn gather(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
+    let i = linear_index(id, groups, 256u);
+    if i >= params.particles_count {
+        return;
+    }
+    let from_item = sort_pairs[i].y;
+    let p = particles_position[from_item];
+    sorted[i] = Sorted(p.x, p.y, p.z, from_item);
+}
