@@ -1,6 +1,10 @@
 //! Expressions: the tree. Every node has its span inside the string of the file, so that errors
 //! point there.
 
+mod parse;
+
+pub use parse::parse;
+
 use super::value::Value;
 use crate::diagnostic::Span;
 
@@ -50,7 +54,7 @@ pub enum Binary {
     Or,
 }
 
-/// Functions of the expression language. The last six take a name, not a value.
+/// Functions of the expression language. The last five take a name, not a value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Function {
     Min,
@@ -86,6 +90,11 @@ impl Function {
         ("has", Function::Has),
         ("device", Function::Device),
     ];
+
+    /// Whether its argument is a name rather than a value.
+    pub fn takes_name(self) -> bool {
+        matches!(self, Function::Size | Function::Count | Function::Capacity | Function::Has | Function::Device)
+    }
 
     pub fn name(self) -> &'static str {
         Self::ALL.iter().find(|(_, f)| *f == self).map_or("?", |(name, _)| name)

@@ -6,4 +6,7 @@
 
 pub mod expr;
 pub mod model;
+mod read;
 pub mod value;
+
+pub use read::{SAMPLERS, SCALARS, read};

@@ -8,12 +8,7 @@ use super::value::Value;
 use crate::diagnostic::{FileId, Span};
 use crate::format::TextureFormat;
 
-/// A value and where it was written.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Sp<T> {
-    pub value: T,
-    pub span: Span,
-}
+pub use crate::syntax::Sp;
 
 /// A name or a dotted path as written.
 pub type Name = Sp<String>;
