@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use crate::diagnostic::{FileId, Span};
 use crate::format::{SampleKind, TextureFormat};
+use crate::shader::SourceMap;
 
 /// A WGSL file with its imports, parsed, validated and reflected. All globals lie in bind group
 /// 0, numbered in the order of declaration.
@@ -23,6 +24,8 @@ pub struct Module {
     /// Entry points of the named file only.
     pub entries: Vec<Entry>,
     pub overrides: Vec<Override>,
+    /// Where places in naga's module lie in the files.
+    pub map: Arc<SourceMap>,
 }
 
 /// A `var` that a pass has to feed.
@@ -143,13 +146,14 @@ pub struct Entry {
     pub discards: bool,
     /// Names of all functions it calls, through any depth.
     pub calls: Vec<String>,
-    /// Features beyond WebGPU's defaults that it needs.
+    /// Features beyond WebGPU's defaults that its module needs: a device takes modules whole, so
+    /// entry points of one module need the same.
     pub features: wgpu_types::Features,
-    /// Bytes of `var<workgroup>` memory.
+    /// Bytes of `var<workgroup>` memory as WebGPU counts them, each variable rounded up to 16.
     pub workgroup_memory: u32,
 }
 
-/// How an entry point uses a global.
+/// How an entry point uses a global. One that is neither read nor written is asked for its size.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Use {
     /// Index into [`Module::globals`].
@@ -158,7 +162,8 @@ pub struct Use {
     pub write: bool,
     /// An atomic operation is among the accesses.
     pub atomic: bool,
-    /// The old value that an atomic returned is used: the order of threads may show.
+    /// The order of threads may show: the old value that an atomic returned is used, an exchange
+    /// compares, or what atomics change is loaded in the same entry point.
     pub atomic_result: bool,
 }
 
