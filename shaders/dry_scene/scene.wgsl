@@ -89,7 +89,7 @@ fn shade(in: Vertex) -> @location(0) vec4f {
     var albedo = params.box_color;
     var alpha = 1.0;
     if in.is_box == 0u {
-        albedo = params.floor_color * mix(0.72, 1.0, square);
+        albedo = params.floor_color * mix(0.84, 1.0, square);
         let away = length(in.world.xz - params.middle) / params.floor_radius_m;
         alpha = 1.0 - smoothstep(0.35, 1.0, away);
     }

@@ -20,7 +20,7 @@ fn draw_sky(@builtin(global_invocation_id) id: vec3u) {
     }
     let direction = normalize(cube_direction(id.z, (vec2f(id.xy) + 0.5) / vec2f(size)));
     let to_sun = -sun.direction;
-    let color = sky_radiance(direction, to_sun, params.brightness)
+    let color = sky_radiance(direction, to_sun, irradiance(sun), params.brightness)
         + sun_radiance(direction, to_sun, irradiance(sun), params.sun_radius);
     textureStore(cube, id.xy, id.z, vec4f(color, 1.0));
 }

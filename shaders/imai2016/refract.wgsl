@@ -16,6 +16,8 @@ struct Params {
     shapes_splash_radius: f32,
 }
 
+const BOUNCE_STEPS = 16u;
+
 /// Where a ray is, on a surface of the body or of the splashes.
 struct Place {
     found: bool,
@@ -87,21 +89,25 @@ fn seen_through(start: vec3f, view: vec3f, first: Place) -> vec3f {
         at = way_out(p, direction, at);
         p += at.t * direction;
         share *= transmitted(params.absorption, at.t);
-        // Liquid that rests on something wets it: no air between, no second surface.
-        let dry = dry_z_at(at.pixel);
-        if dry != 0.0 && p.z - dry < params.contact_m {
-            return light + share * dry_over_sky(at.pixel, direction);
-        }
         if entered == params.refractions {
             break;
         }
-        let inside = facing(at.normal, direction);
-        let out = bend_out(direction, inside, params.ior);
-        light += share * out.reflectance * background(p, reflect(direction, inside), params.reach_m);
-        share *= 1.0 - out.reflectance;
-        if out.reflectance == 1.0 {
+        // Liquid that rests on something wets it: no air between, no second surface.
+        let wet = smoothstep(params.contact_m, 0.5 * params.contact_m, dry_distance(p, at.pixel));
+        if wet > 0.0 {
+            light += share * wet * dry_over_sky(at.pixel, direction);
+            share *= 1.0 - wet;
+        }
+        if wet == 1.0 {
             return light;
         }
+        let inside = facing(at.normal, direction);
+        let out = bend_out(direction, inside, params.ior);
+        if out.reflectance == 1.0 {
+            return light + share * thrown_back(p, out.direction, at.in_body);
+        }
+        light += share * out.reflectance * background(p, reflect(direction, inside), params.reach_m);
+        share *= 1.0 - out.reflectance;
         direction = out.direction;
 
         if entered + 2u > params.refractions {
@@ -115,6 +121,32 @@ fn seen_through(start: vec3f, view: vec3f, first: Place) -> vec3f {
         p += at.t * direction;
     }
     return light + share * background(p, direction, params.reach_m);
+}
+
+/// Total reflection, which the paper leaves open: the ray goes on inside until it meets something dry or leaves the
+/// layer between front and back, and then straight on into the air.
+fn thrown_back(p: vec3f, direction: vec3f, in_body: bool) -> vec3f {
+    var t = 0.0;
+    for (var k = 1u; k <= BOUNCE_STEPS; k++) {
+        let share = f32(k) / f32(BOUNCE_STEPS);
+        let next = params.reach_m * share * share;
+        let q = p + next * direction;
+        let pixel = pixel_from_eye(q);
+        if q.z > -camera.near || !on_screen(pixel) {
+            break;
+        }
+        let texel = vec2i(pixel);
+        var ends = vec2f(textureLoad(splash_z, texel, 1, 0).x, textureLoad(splash_z, texel, 0, 0).x);
+        if in_body {
+            ends = vec2f(textureLoad(body_z, texel, 1, 0).x, textureLoad(body_z, texel, 0, 0).x);
+        }
+        // A little room behind the back, where the ray starts.
+        if ends.y == 0.0 || q.z > ends.y || q.z < ends.x - params.contact_m {
+            break;
+        }
+        t = next;
+    }
+    return transmitted(params.absorption, t) * background(p + t * direction, direction, params.reach_m);
 }
 
 /// The normal turned against a direction; where a surface is seen from its edge it is tilted until it faces it.

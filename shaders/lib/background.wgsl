@@ -23,9 +23,24 @@ fn dry_z_at(pixel: vec2f) -> f32 {
     return textureLoad(dry_z, clamp(vec2i(pixel), vec2i(0), vec2i(camera.viewport) - 1), 0).x;
 }
 
+/// How far a point is from the dry scene behind its pixel, measured across the surface there; huge where nothing is.
+fn dry_distance(p: vec3f, pixel: vec2f) -> f32 {
+    let texel = clamp(vec2i(pixel), vec2i(0), vec2i(camera.viewport) - 2);
+    let z = textureLoad(dry_z, texel, 0).x;
+    if z == 0.0 {
+        return 1.0e30;
+    }
+    let here = eye_from_pixel(vec2f(texel) + 0.5, z);
+    let right = eye_from_pixel(vec2f(texel) + vec2f(1.5, 0.5), textureLoad(dry_z, texel + vec2i(1, 0), 0).x) - here;
+    let down = eye_from_pixel(vec2f(texel) + vec2f(0.5, 1.5), textureLoad(dry_z, texel + vec2i(0, 1), 0).x) - here;
+    let crossed = cross(down, right);
+    return dot(crossed * inverseSqrt(max(dot(crossed, crossed), 1.0e-30)), p - here);
+}
+
 /// Marches in growing steps until the ray is behind the dry scene, then halves the last step. All in eye space.
 fn background(p: vec3f, direction: vec3f, reach: f32) -> vec3f {
-    var before = 0.0;
+    var ends = vec2f(0.0);
+    var found = false;
     for (var k = 0u; k <= DRY_STEPS; k++) {
         let share = f32(k) / f32(DRY_STEPS);
         let t = reach * share * share;
@@ -34,23 +49,28 @@ fn background(p: vec3f, direction: vec3f, reach: f32) -> vec3f {
         if q.z > -camera.near || !on_screen(pixel) {
             break;
         }
-        let z = dry_z_at(pixel);
+        let z = textureLoad(dry_z, vec2i(pixel), 0).x;
+        ends = vec2f(ends.y, t);
         if z != 0.0 && q.z <= z {
-            var ends = vec2f(before, t);
-            for (var half = 0; half < 8; half++) {
-                let middle = 0.5 * (ends.x + ends.y);
-                let m = p + middle * direction;
-                let z_middle = dry_z_at(pixel_from_eye(m));
-                ends = select(vec2f(middle, ends.y), vec2f(ends.x, middle), z_middle != 0.0 && m.z <= z_middle);
-            }
-            let hit = p + ends.y * direction;
-            let at = pixel_from_eye(hit);
-            // A ray that passes far behind something has not met it.
-            if dry_z_at(at) - hit.z <= 0.25 * (t - before) + 0.01 * reach {
-                return dry_over_sky(at, direction);
-            }
+            found = true;
+            break;
         }
-        before = t;
     }
-    return sky_towards(direction);
+    if !found {
+        return sky_towards(direction);
+    }
+    let stride = ends.y - ends.x;
+    for (var k = 0; k < 6; k++) {
+        let middle = 0.5 * (ends.x + ends.y);
+        let m = p + middle * direction;
+        let z = dry_z_at(pixel_from_eye(m));
+        ends = select(vec2f(middle, ends.y), vec2f(ends.x, middle), z != 0.0 && m.z <= z);
+    }
+    let hit = p + ends.y * direction;
+    let at = pixel_from_eye(hit);
+    // A ray that passes far behind something has not met it.
+    if dry_z_at(at) - hit.z > 0.25 * stride + 0.01 * reach {
+        return sky_towards(direction);
+    }
+    return dry_over_sky(at, direction);
 }

@@ -89,9 +89,10 @@ fn leave_shell(shell_z: texture_2d_array<f32>, p: vec3f, direction: vec3f, reach
 /// From a point in the air to the front of a shell: marches outwards in growing steps, then closes in by secants.
 /// A ray that starts inside must leave first. Hits count only between front and back.
 fn enter_shell(shell_z: texture_2d_array<f32>, p: vec3f, direction: vec3f, reach: f32, march_steps: u32, steps: u32) -> Crossing {
-    var before = 0.0;
-    var gap_before = 0.0;
+    var ts = vec2f(0.0);
+    var gaps = vec2f(0.0);
     var outside = false;
+    var found = false;
     for (var k = 0u; k <= march_steps; k++) {
         let share = f32(k) / f32(march_steps);
         let t = reach * share * share;
@@ -101,18 +102,21 @@ fn enter_shell(shell_z: texture_2d_array<f32>, p: vec3f, direction: vec3f, reach
             break;
         }
         let front = textureLoad(shell_z, vec2i(pixel), 0, 0).x;
-        let back = textureLoad(shell_z, vec2i(pixel), 1, 0).x;
         let gap = q.z - front;
-        if front == 0.0 || gap > 0.0 || q.z < back {
-            outside = true;
-            before = t;
-            // Only in front of the surface is there something to draw a secant from.
-            gap_before = select(0.0, gap, front != 0.0 && gap > 0.0);
-        } else if outside {
-            return close_in(shell_z, p, direction, vec2f(before, t), vec2f(gap_before, gap), steps);
+        // Only in front of the surface is there something to draw a secant from.
+        ts = vec2f(ts.y, t);
+        gaps = vec2f(gaps.y, select(gap, 0.0, front == 0.0));
+        let inside = front != 0.0 && gap <= 0.0 && q.z >= textureLoad(shell_z, vec2i(pixel), 1, 0).x;
+        if inside && outside {
+            found = true;
+            break;
         }
+        outside = outside || !inside;
     }
-    return Crossing(false, reach, vec2f(0.0));
+    if !found {
+        return Crossing(false, reach, vec2f(0.0));
+    }
+    return close_in(shell_z, p, direction, ts, gaps, steps);
 }
 
 /// The crossing of a front layer between `ts`.x outside (in front of it by `gaps`.x; 0: unknown) and `ts`.y inside.

@@ -1,19 +1,23 @@
 // A clear sky with a sun by day: gradients fitted by eye, no model of the atmosphere.
 
-const ZENITH = vec3f(0.10, 0.24, 0.58);
-const HORIZON = vec3f(0.62, 0.74, 0.88);
-const GROUND = vec3f(0.30, 0.29, 0.28);
+const ZENITH = vec3f(0.07, 0.21, 0.58);
+const HORIZON = vec3f(0.74, 0.84, 0.94);
+/// Albedo of the ground below the horizon, which lies in sun and sky light like a floor.
+const GROUND = vec3f(0.52, 0.46, 0.39);
+/// Irradiance of the sky on the ground at brightness 1.
+const SKY_IRRADIANCE = vec3f(1.05, 1.45, 2.05);
 
-/// Radiance of the sky without the sun's disc; `sun` is the unit direction to the sun.
-fn sky_radiance(direction: vec3f, sun: vec3f, brightness: f32) -> vec3f {
+/// Radiance of sky and ground without the sun's disc; `sun` is the unit direction to the sun.
+fn sky_radiance(direction: vec3f, sun: vec3f, irradiance: vec3f, brightness: f32) -> vec3f {
     let up = direction.y;
-    let haze = pow(1.0 - clamp(up, 0.0, 1.0), 3.5);
-    var color = mix(ZENITH, HORIZON, haze);
+    let haze = pow(1.0 - clamp(abs(up), 0.0, 1.0), 4.0);
+    var above = mix(ZENITH, HORIZON, haze);
     let near_sun = max(dot(direction, sun), 0.0);
-    color += vec3f(1.0, 0.86, 0.66) * (0.35 * pow(near_sun, 32.0) + 0.25 * haze * pow(near_sun, 4.0));
-    // The ground below runs into the horizon's haze.
-    color = mix(color, GROUND * (0.75 + 0.5 * max(sun.y, 0.0)), smoothstep(0.01, -0.12, up));
-    return brightness * color;
+    above += vec3f(1.0, 0.86, 0.66) * (0.3 * pow(near_sun, 48.0) + 0.2 * haze * pow(near_sun, 4.0));
+    let lit = brightness * SKY_IRRADIANCE + irradiance * max(sun.y, 0.0);
+    // Far ground is seen through as much haze as the sky beside it.
+    let below = mix(GROUND * lit / 3.14159265, brightness * HORIZON, pow(1.0 - clamp(-up, 0.0, 1.0), 16.0));
+    return select(brightness * above, below, up < 0.0);
 }
 
 /// Radiance of the sun's disc with a soft rim, so that it brings `irradiance` to a surface that faces it.

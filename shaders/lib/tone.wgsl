@@ -1,6 +1,6 @@
 // Tone curves from scene-linear light to linear light in [0, 1].
 
-/// Troy Sobotka's AgX, in Benjamin Wrensch's polynomial form, without a look.
+/// Troy Sobotka's AgX, in Benjamin Wrensch's polynomial form, with a mild look: some contrast and saturation.
 fn agx(color: vec3f) -> vec3f {
     let inset = mat3x3f(
         0.842479062253094, 0.0423282422610123, 0.0423756549057051,
@@ -19,8 +19,11 @@ fn agx(color: vec3f) -> vec3f {
     let x2 = x * x;
     let x4 = x2 * x2;
     let curve = 15.5 * x4 * x2 - 40.14 * x4 * x + 31.96 * x4 - 6.868 * x2 * x + 0.4298 * x2 + 0.1191 * x - 0.00232;
+    let contrast = pow(max(curve, vec3f(0.0)), vec3f(1.2));
+    let grey = dot(contrast, vec3f(0.2126, 0.7152, 0.0722));
+    let look = mix(vec3f(grey), contrast, 1.3);
     // The curve gives display values; the host encodes, so back to linear light.
-    return pow(clamp(outset * curve, vec3f(0.0), vec3f(1.0)), vec3f(2.2));
+    return pow(clamp(outset * look, vec3f(0.0), vec3f(1.0)), vec3f(2.2));
 }
 
 /// Stephen Hill's fit of the ACES reference and output transforms.

@@ -10,7 +10,7 @@ var<uniform> sun: Light;
 fn over_sky(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let direction = normalize(world_from_eye_vector(eye_ray(position.xy).direction));
     let to_sun = -sun.direction;
-    let backdrop = sky_radiance(direction, to_sun, params.brightness)
+    let backdrop = sky_radiance(direction, to_sun, irradiance(sun), params.brightness)
         + sun_radiance(direction, to_sun, irradiance(sun), params.sun_radius);
     return presented(textureLoad(color, vec2i(position.xy), 0), backdrop);
 }
