@@ -1,0 +1,151 @@
+//! A radius from the spacing of particles.
+//!
+//! The tree of boxes splits where the particles are, so a thin sheet, a few drops far away or
+//! particles at the same place cost nothing extra, as they would with cells of one size.
+
+/// Particles whose nearest neighbour is looked for.
+const SAMPLES: usize = 2_000;
+/// Particles in a box that is not split further.
+const LEAF: usize = 24;
+/// Particles whose middle one tells where a box is split.
+const PIVOTS: usize = 31;
+
+/// Half of the median distance to the nearest particle at another place, in the unit of the
+/// positions. None with fewer than two distinct finite positions.
+///
+/// Up to 2,000 particles, spread evenly over the list, are asked; each searches among all.
+pub fn estimate_radius(positions: &[[f32; 3]]) -> Option<f32> {
+    let finite = |p: &&[f32; 3]| p.iter().all(|v| v.is_finite());
+    let mut points: Vec<[f32; 3]> = positions.iter().filter(finite).copied().collect();
+    let samples = points.len().min(SAMPLES);
+    let asked: Vec<[f32; 3]> = (0..samples).map(|i| points[i * points.len() / samples]).collect();
+    let tree = Tree::new(&mut points)?;
+    let mut squared: Vec<f64> = asked.into_iter().map(|p| tree.nearest_squared(p)).filter(|d| d.is_finite()).collect();
+    if squared.is_empty() {
+        return None;
+    }
+    let middle = squared.len() / 2;
+    let (_, median, _) = squared.select_nth_unstable_by(middle, f64::total_cmp);
+    let radius = (median.sqrt() * 0.5) as f32;
+    (radius > 0.0 && radius.is_finite()).then_some(radius)
+}
+
+/// Bounds of some points, and which they are.
+struct Node {
+    min: [f32; 3],
+    max: [f32; 3],
+    start: usize,
+    end: usize,
+    /// The second of the two halves; the first is the next node. None if the box is not split.
+    second: Option<usize>,
+}
+
+struct Tree<'a> {
+    points: &'a [[f32; 3]],
+    nodes: Vec<Node>,
+}
+
+impl<'a> Tree<'a> {
+    /// Sorts finite points into boxes; none without a point.
+    fn new(points: &'a mut [[f32; 3]]) -> Option<Self> {
+        if points.is_empty() {
+            return None;
+        }
+        let mut nodes = Vec::with_capacity(4 * points.len() / LEAF + 1);
+        split(points, 0, &mut nodes);
+        Some(Self { points, nodes })
+    }
+
+    /// The square of the distance to the nearest point that is elsewhere; infinite if none is.
+    fn nearest_squared(&self, from: [f32; 3]) -> f64 {
+        let mut best = f64::INFINITY;
+        // Boxes that are still to be looked at, with their distances.
+        let mut open = vec![(0.0, 0)];
+        while let Some((distance, index)) = open.pop() {
+            if distance >= best {
+                continue;
+            }
+            let node = &self.nodes[index];
+            let Some(second) = node.second else {
+                for &point in &self.points[node.start..node.end] {
+                    let squared = squared(from, point);
+                    if squared > 0.0 && squared < best {
+                        best = squared;
+                    }
+                }
+                continue;
+            };
+            let near = (self.nodes[index + 1].squared(from), index + 1);
+            let far = (self.nodes[second].squared(from), second);
+            let (near, far) = if near.0 <= far.0 { (near, far) } else { (far, near) };
+            open.extend([far, near]);
+        }
+        best
+    }
+}
+
+impl Node {
+    fn squared(&self, from: [f32; 3]) -> f64 {
+        squared(from, std::array::from_fn(|axis| from[axis].clamp(self.min[axis], self.max[axis])))
+    }
+}
+
+fn squared(a: [f32; 3], b: [f32; 3]) -> f64 {
+    let along = |axis: usize| f64::from(a[axis]) - f64::from(b[axis]);
+    let (x, y, z) = (along(0), along(1), along(2));
+    x * x + y * y + z * z
+}
+
+/// Appends the boxes of `points`, of which `start` others are before them.
+fn split(points: &mut [[f32; 3]], start: usize, nodes: &mut Vec<Node>) {
+    let (min, max) = bounds(points);
+    let this = nodes.len();
+    let same_place = min == max;
+    let kept = if same_place { 1 } else { points.len() };
+    nodes.push(Node { min, max, start, end: start + kept, second: None });
+    if same_place || points.len() <= LEAF {
+        return;
+    }
+    let axis = widest(min, max);
+    let middle = partition(points, axis, min[axis], max[axis]);
+    let (first, second) = points.split_at_mut(middle);
+    split(first, start, nodes);
+    nodes[this].second = Some(nodes.len());
+    split(second, start + middle, nodes);
+}
+
+fn bounds(points: &[[f32; 3]]) -> ([f32; 3], [f32; 3]) {
+    let mut min = [f32::INFINITY; 3];
+    let mut max = [f32::NEG_INFINITY; 3];
+    for point in points {
+        for axis in 0..3 {
+            min[axis] = if point[axis] < min[axis] { point[axis] } else { min[axis] };
+            max[axis] = if point[axis] > max[axis] { point[axis] } else { max[axis] };
+        }
+    }
+    (min, max)
+}
+
+fn widest(min: [f32; 3], max: [f32; 3]) -> usize {
+    let extent = |axis: usize| f64::from(max[axis]) - f64::from(min[axis]);
+    let wider = if extent(1) > extent(0) { 1 } else { 0 };
+    if extent(2) > extent(wider) { 2 } else { wider }
+}
+
+/// Moves the lower points of an axis along which they differ to the front; how many those are,
+/// at least one and not all.
+fn partition(points: &mut [[f32; 3]], axis: usize, min: f32, max: f32) -> usize {
+    let count = points.len();
+    let mut pivots: [f32; PIVOTS] = std::array::from_fn(|i| points[i * count / PIVOTS][axis]);
+    let (_, &mut pivot, _) = pivots.select_nth_unstable_by(PIVOTS / 2, f32::total_cmp);
+    // Points that do not exceed the highest but one value make a half that is not all of them.
+    let pivot = if pivot < max { pivot } else { ((f64::from(min) + f64::from(max)) / 2.0) as f32 };
+    let pivot = if pivot < max { pivot } else { min };
+    let mut front = 0;
+    for at in 0..count {
+        let lower = points[at][axis] <= pivot;
+        points.swap(at, front);
+        front += usize::from(lower);
+    }
+    front
+}
