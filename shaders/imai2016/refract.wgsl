@@ -61,15 +61,10 @@ fn first_surface(pixel: vec2f) -> Place {
 }
 
 fn normal_at(in_body: bool, layer: i32, pixel: vec2f) -> vec3f {
-    let uv = pixel / camera.viewport;
-    var normal: vec3f;
     if in_body {
-        normal = textureSampleLevel(smooth_normal, linear_clamp, uv, layer, 0.0).xyz;
-    } else {
-        normal = textureSampleLevel(splash_normal, linear_clamp, uv, layer, 0.0).xyz;
+        return layer_normal(smooth_normal, linear_clamp, layer, pixel);
     }
-    let length_2 = dot(normal, normal);
-    return select(vec3f(0.0, 0.0, 1.0), normal * inverseSqrt(length_2), length_2 > 0.0);
+    return layer_normal(splash_normal, linear_clamp, layer, pixel);
 }
 
 /// Equations 6 to 8 as a loop over pairs of surfaces, from where the view ray meets the liquid.
@@ -149,28 +144,18 @@ fn thrown_back(p: vec3f, direction: vec3f, in_body: bool) -> vec3f {
     return transmitted(params.absorption, t) * background(p + t * direction, direction, params.reach_m);
 }
 
-/// The normal turned against a direction; where a surface is seen from its edge it is tilted until it faces it.
-fn facing(normal: vec3f, direction: vec3f) -> vec3f {
-    let against = select(normal, -normal, dot(normal, direction) > 0.0);
-    let cosine = -dot(against, direction);
-    return normalize(against - direction * max(0.02 - cosine, 0.0));
-}
-
 /// From a point on the liquid's surface to the back of the same class.
 fn way_out(p: vec3f, direction: vec3f, from_place: Place) -> Place {
     if from_place.in_body {
         let back = leave_shell(body_z, p, direction, params.reach_m, params.secant_steps);
         return Place(true, back.t, back.pixel, true, normal_at(true, 1, back.pixel));
     }
-    let diameter = 2.0 * params.shapes_splash_radius;
-    let back = leave_shell(splash_z, p, direction, 1.05 * diameter, params.secant_steps);
+    let back = leave_sphere(splash_z, p, direction, from_place.normal, params.shapes_splash_radius, params.secant_steps);
     if back.found {
         return Place(true, back.t, back.pixel, false, normal_at(false, 1, back.pixel));
     }
-    // The farthest back belongs to another splash behind this one, whose own back its radius tells.
-    let chord = -diameter * dot(from_place.normal, direction);
-    let normal = normalize(params.shapes_splash_radius * from_place.normal + chord * direction);
-    return Place(true, chord, pixel_from_eye(p + chord * direction), false, normal);
+    let normal = normalize(params.shapes_splash_radius * from_place.normal + back.t * direction);
+    return Place(true, back.t, back.pixel, false, normal);
 }
 
 /// The next front that a ray in the air meets, of either class.

@@ -86,6 +86,31 @@ fn leave_shell(shell_z: texture_2d_array<f32>, p: vec3f, direction: vec3f, reach
     return Crossing(bracketed, t, pixel_from_eye(p + t * direction));
 }
 
+/// From a point on a sphere of a shell to its back. The shell's farthest back may belong to another sphere behind this
+/// one; then `found` is false, and `t` is the chord that the radius and the outward `normal` tell.
+fn leave_sphere(shell_z: texture_2d_array<f32>, p: vec3f, direction: vec3f, normal: vec3f, radius: f32, steps: u32) -> Crossing {
+    let back = leave_shell(shell_z, p, direction, 2.1 * radius, steps);
+    if back.found {
+        return back;
+    }
+    let chord = max(-2.0 * radius * dot(normal, direction), 0.0);
+    return Crossing(false, chord, pixel_from_eye(p + chord * direction));
+}
+
+/// Unit normal of a layer between the pixels' centres; towards the viewer where there is none.
+fn layer_normal(normals: texture_2d_array<f32>, smoothly: sampler, layer: i32, pixel: vec2f) -> vec3f {
+    let normal = textureSampleLevel(normals, smoothly, pixel / camera.viewport, layer, 0.0).xyz;
+    let length_2 = dot(normal, normal);
+    return select(vec3f(0.0, 0.0, 1.0), normal * inverseSqrt(length_2), length_2 > 0.0);
+}
+
+/// The normal turned against a direction; where a surface is seen from its edge it is tilted until it faces it.
+fn facing(normal: vec3f, direction: vec3f) -> vec3f {
+    let against = select(normal, -normal, dot(normal, direction) > 0.0);
+    let cosine = -dot(against, direction);
+    return normalize(against - direction * max(0.02 - cosine, 0.0));
+}
+
 /// From a point in the air to the front of a shell: marches outwards in growing steps, then closes in by secants.
 /// A ray that starts inside must leave first. Hits count only between front and back.
 fn enter_shell(shell_z: texture_2d_array<f32>, p: vec3f, direction: vec3f, reach: f32, march_steps: u32, steps: u32) -> Crossing {
