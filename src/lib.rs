@@ -5,11 +5,13 @@
 //! engine → picture. Each step is a function from one value to the next, and everything up to
 //! and including the plan works without a GPU.
 
+pub mod check;
 pub mod diagnostic;
 pub mod files;
 pub mod format;
 pub mod graph;
 pub mod plan;
+pub mod program;
 pub mod scene;
 pub mod shader;
 pub mod syntax;

@@ -1,9 +1,10 @@
 //! The graph language: what a graph file says, as plain data with spans.
 //!
 //! [`model`] is the shape, [`read`] makes it from RON text and reports every mistake of form,
-//! [`expr`] is the small language inside strings. Nothing here looks at shaders or evaluates
-//! anything; `plan` does.
+//! [`expr`] is the small language inside strings, and [`eval`] gives expressions their values.
+//! Nothing here looks at shaders or knows what names stand for; `plan` does.
 
+pub mod eval;
 pub mod expr;
 pub mod model;
 mod read;

@@ -1,5 +1,297 @@
 //! Planning: from a checked graph and the facts of a frame to a plan of plain data.
 //!
-//! Planning is a pure function. It touches no device and no file.
+//! [`instantiate`] is a pure function. It touches no device and no file, and what it gives either
+//! runs without an error of wgpu's on a device that has what [`model::Needs`] says, or is
+//! diagnostics.
 
+mod cull;
+pub mod fields;
+mod flow;
+mod insert;
+mod lower;
+pub mod memory;
 pub mod model;
+pub mod needs;
+pub mod print;
+mod units;
+
+use std::collections::{BTreeMap, BTreeSet};
+
+pub(crate) use lower::stand_in_texture;
+use lower::{Entity, Lowering};
+use model::{Causes, Object, ObjectId, ObjectRef, Output, Pass, Plan, Request};
+
+use crate::diagnostic::{Code, Diagnostic, Diagnostics};
+use crate::program::Program;
+
+/// Makes a plan (rule 36): flattens, takes branches, unrolls loops, evaluates every expression,
+/// applies all rules to the flat list, and derives what to run, in what memory.
+///
+/// # Errors
+/// Everything that is wrong, at once where one fault does not hide another.
+pub fn instantiate(program: &Program, request: &Request) -> Result<Plan, Diagnostics> {
+    plan(program, request, false)
+}
+
+/// The same for a file by itself: what nothing describes is made up, and every output counts.
+pub(crate) fn instantiate_stand_in(program: &Program, request: &Request) -> Result<Plan, Diagnostics> {
+    plan(program, request, true)
+}
+
+fn plan(program: &Program, request: &Request, stand_in: bool) -> Result<Plan, Diagnostics> {
+    let mut lowering = Lowering::new(program, request, stand_in);
+    unknown_params(&mut lowering);
+    lowering.run();
+    let outputs = outputs(&mut lowering);
+    let roots = roots(&mut lowering, &outputs, stand_in);
+    if lowering.diagnostics.has_errors() {
+        return Err(lowering.diagnostics);
+    }
+    flow::check(&mut lowering);
+    if lowering.diagnostics.has_errors() {
+        return Err(lowering.diagnostics);
+    }
+    let warnings = unused(&lowering, &outputs);
+    let culled = cull::cull(&mut lowering, &roots);
+    let argument_slots = insert::insert(&mut lowering);
+    insert::cover_steps(&mut lowering);
+    let units = units::units(&mut lowering);
+    seal_steps(&mut lowering, &units);
+    mark_unordered(&mut lowering);
+    finish(lowering, outputs, &roots, culled, units, argument_slots, warnings)
+}
+
+/// Puts the plan together, with lifetimes, memory and needs.
+fn finish(
+    mut lowering: Lowering<'_>,
+    outputs: Vec<Output>,
+    roots: &[ObjectId],
+    culled: Vec<model::Culled>,
+    units: Vec<model::Unit>,
+    argument_slots: u32,
+    mut warnings: Diagnostics,
+) -> Result<Plan, Diagnostics> {
+    let mut objects: Vec<Object> = lowering.objects.iter().map(|b| b.object.clone()).collect();
+    let passes: Vec<Pass> = lowering.flat.iter().map(|f| f.pass.clone()).collect();
+    let touched = |pass: &Pass| -> Vec<ObjectId> {
+        pass.accesses.iter().flat_map(|a| lowering.object_ids(a.object)).collect::<BTreeSet<_>>().into_iter().collect()
+    };
+    memory::lifetimes(&mut objects, &passes, &lowering.steps, &touched);
+    let memory = memory::share(&objects, &passes, &units, roots, &touched);
+    let (needs, lacking) = needs::needs(&lowering, &objects);
+    if lacking.has_errors() {
+        lowering.diagnostics.extend(lacking);
+        return Err(lowering.diagnostics);
+    }
+    for diagnostic in lowering.diagnostics.0.drain(..) {
+        warnings.push(diagnostic);
+    }
+    let names = names(&lowering);
+    Ok(Plan {
+        graph: lowering.program.root.path.clone(),
+        viewport: lowering.request.viewport,
+        modules: lowering.modules,
+        objects,
+        uniforms: lowering.uniforms,
+        samplers: lowering.samplers,
+        passes,
+        culled,
+        units,
+        rings: lowering.rings,
+        steps: lowering.steps,
+        outputs,
+        names,
+        memory,
+        needs,
+        params: lowering.params.into_values().collect(),
+        taken: lowering.program.taken(),
+        argument_slots,
+        warnings,
+    })
+}
+
+/// Parameters that were asked for by a name that nothing bears.
+fn unknown_params(lowering: &mut Lowering<'_>) {
+    // Parameters of parts are known only once the parts are there; see `after`.
+    let own: Vec<String> = lowering.program.root.params.iter().map(|p| p.name.value.clone()).collect();
+    let unknown: Vec<String> =
+        lowering.request.params.keys().filter(|path| !path.contains('.') && !own.contains(path)).cloned().collect();
+    for path in unknown {
+        let message = format!("there is no parameter `{path}`");
+        let diagnostic = Diagnostic::error(Code::UNKNOWN_NAME, message)
+            .at(lowering.program.root.span, "in this graph")
+            .nearest(&path, own.iter().map(String::as_str));
+        lowering.diagnostics.push(diagnostic);
+    }
+}
+
+/// The outputs as objects after the last pass.
+fn outputs(lowering: &mut Lowering<'_>) -> Vec<Output> {
+    let graph = lowering.program.root.clone();
+    let mut outputs = Vec::new();
+    if graph.outputs.is_empty() && !lowering.diagnostics.has_errors() {
+        let diagnostic = Diagnostic::error(Code::MISSING_FIELD, "the graph has no outputs: nothing would run")
+            .at(graph.span, "this graph")
+            .hint("say `outputs: [\"...\"]`; the first is the picture");
+        lowering.diagnostics.push(diagnostic);
+    }
+    for output in &graph.outputs {
+        let entity = lowering.resolve(0, &output.of.value, output.of.span);
+        match lowering.report(entity) {
+            Some(Entity::Var(var)) => {
+                outputs.push(Output { name: output.name.value.clone(), object: lowering.vars[var].now });
+            }
+            // Parts put out scalars and inputs too; those need no pass.
+            Some(_) | None => {}
+        }
+    }
+    outputs
+}
+
+/// What must be there after the last pass: the first output and what somebody asks for.
+fn roots(lowering: &mut Lowering<'_>, outputs: &[Output], all: bool) -> Vec<ObjectId> {
+    let count = if all { outputs.len() } else { 1 };
+    let mut roots: Vec<ObjectId> = outputs.iter().take(count).flat_map(|o| lowering.object_ids(o.object)).collect();
+    let names = names(lowering);
+    for asked in lowering.request.roots.clone() {
+        let found = names.get(&asked).or_else(|| outputs.iter().find(|o| o.name == asked).map(|o| &o.object));
+        match found {
+            Some(object) => roots.extend(lowering.object_ids(*object)),
+            None => {
+                let known: Vec<&str> = names.keys().map(String::as_str).collect();
+                let diagnostic = Diagnostic::error(Code::UNKNOWN_NAME, format!("no resource is called `{asked}`"))
+                    .at(lowering.program.root.span, "in this graph")
+                    .nearest(&asked, known.iter().copied());
+                lowering.diagnostics.push(diagnostic);
+            }
+        }
+    }
+    roots.sort_unstable();
+    roots.dedup();
+    roots
+}
+
+/// Instance paths of resources, and what is behind them after the last pass.
+fn names(lowering: &Lowering<'_>) -> BTreeMap<String, ObjectRef> {
+    let mut names = BTreeMap::new();
+    for scope in &lowering.scopes {
+        for (resource, var) in scope.graph.resources.iter().zip(&scope.resources) {
+            let Some(var) = var.filter(|var| *var < lowering.vars.len()) else { continue };
+            let name = &resource.name.value;
+            let path = if scope.path.is_empty() { name.clone() } else { format!("{}.{name}", scope.path) };
+            names.insert(path, lowering.vars[var].now);
+        }
+    }
+    for var in &lowering.vars {
+        let building = lowering.object(var.now);
+        if !matches!(building.object.origin, model::Origin::Frame | model::Origin::State(_)) {
+            names.insert(building.object.path.clone(), var.now);
+        }
+    }
+    names
+}
+
+/// Declarations that nothing asked for, and resources that nothing reads.
+fn unused(lowering: &Lowering<'_>, outputs: &[Output]) -> Diagnostics {
+    let mut found = Diagnostics::new();
+    let mut seen = BTreeSet::new();
+    for scope in &lowering.scopes {
+        let graph = &scope.graph;
+        if !seen.insert(graph.path.clone()) {
+            continue;
+        }
+        let declared = (graph.params.iter().map(|p| (&p.name, "parameter")))
+            .chain(graph.lets.iter().map(|l| (&l.name, "name")))
+            .chain(graph.samplers.iter().map(|s| (&s.name, "sampler")))
+            .chain(graph.resources.iter().map(|r| (&r.name, "resource")))
+            .chain(graph.inputs.iter().map(|i| (&i.name, "input")));
+        for (name, what) in declared {
+            if !lowering.used.contains(&name.span) {
+                let message = format!("nothing uses the {what} `{}`", name.value);
+                found.push(Diagnostic::warning(Code::UNUSED, message).at(name.span, "declared here"));
+            }
+        }
+    }
+    let given: BTreeSet<ObjectRef> = outputs.iter().map(|o| o.object).collect();
+    for (id, building) in lowering.objects.iter().enumerate() {
+        let object = ObjectRef::Fixed(id);
+        let of_frame = building.object.origin == model::Origin::Frame;
+        let attached = lowering.flat.iter().any(|f| attached(&f.pass).contains(&object));
+        if of_frame && !attached && !given.contains(&object) && !flow::reads(&lowering.flat, object) {
+            let message = format!("nothing reads `{}`", building.object.path);
+            found.push(Diagnostic::warning(Code::NEVER_READ, message).at(building.object.span, "declared here"));
+        }
+    }
+    found
+}
+
+/// What a draw uses without a shader that reads it: its depth target, and samples that it resolves.
+fn attached(pass: &Pass) -> Vec<ObjectRef> {
+    let model::PassKind::Draw(draw) = &pass.kind else { return Vec::new() };
+    let resolved = draw.color.iter().filter(|target| target.resolve.is_some()).map(|target| target.view.object);
+    resolved.chain(draw.depth.iter().map(|depth| depth.view.object)).collect()
+}
+
+/// Which state belongs to which steps, when it starts anew, and the rule that steps at a rate do
+/// not see the camera.
+fn seal_steps(lowering: &mut Lowering<'_>, units: &[model::Unit]) {
+    for index in 0..lowering.steps.len() {
+        let state: Vec<ObjectId> = (0..lowering.objects.len())
+            .filter(|id| lowering.objects[*id].object.origin == model::Origin::State(index))
+            .collect();
+        let mut text = lowering.steps[index].path.clone();
+        for id in &state {
+            let object = &lowering.objects[*id].object;
+            text.push_str(&format!("|{}:{:?}", object.path, object.kind));
+        }
+        lowering.steps[index].key = twox_hash::XxHash3_128::oneshot(text.as_bytes());
+        lowering.steps[index].state = state;
+        let cameras: BTreeSet<String> = lowering
+            .program
+            .root
+            .inputs
+            .iter()
+            .filter(|i| matches!(i.kind, crate::graph::model::InputKind::Camera))
+            .map(|i| i.name.value.clone())
+            .collect();
+        if lowering.steps[index].rate.is_none() {
+            continue;
+        }
+        let sees = |causes: &Causes| {
+            causes.live.iter().any(|live| live.split_once('.').is_some_and(|(input, _)| cameras.contains(input)))
+        };
+        let fault = lowering.flat.iter().find(|f| f.pass.steps == Some(index) && sees(&units[f.pass.unit].causes));
+        if let Some(flat) = fault {
+            let message = format!("`{}` runs at a rate and depends on the camera", flat.pass.path);
+            let diagnostic = Diagnostic::error(Code::STATE, message)
+                .at(flat.word, "this pass")
+                .hint("what happens over time is the same from every viewpoint; say `rate: PerFrame` if it is not");
+            lowering.diagnostics.push(diagnostic);
+        }
+    }
+}
+
+/// What the order of atomics reaches: a pass that uses an atomic's old value, and all that read
+/// what it wrote.
+fn mark_unordered(lowering: &mut Lowering<'_>) {
+    let mut reached: BTreeSet<ObjectId> = BTreeSet::new();
+    loop {
+        let mut changed = false;
+        for p in 0..lowering.flat.len() {
+            let pass = &lowering.flat[p].pass;
+            let reads = pass.accesses.iter().any(|a| a.read && reached.contains(&lowering.object_id(a.object)));
+            if !(pass.unordered || reads) {
+                continue;
+            }
+            let written: Vec<ObjectId> =
+                pass.accesses.iter().filter(|a| a.write).flat_map(|a| lowering.object_ids(a.object)).collect();
+            for id in written {
+                changed |= reached.insert(id);
+            }
+            lowering.flat[p].pass.unordered = true;
+        }
+        if !changed {
+            return;
+        }
+    }
+}

@@ -511,3 +511,43 @@ pub enum InputInfo {
         rows: Vec<BTreeMap<String, Value>>,
     },
 }
+
+/// Visits every object that a pass refers to.
+pub fn each_ref(kind: &mut PassKind, visit: &mut dyn FnMut(&mut ObjectRef)) {
+    fn shader(shader: &mut ShaderUse, visit: &mut dyn FnMut(&mut ObjectRef)) {
+        for binding in &mut shader.bindings {
+            match &mut binding.bound {
+                Bound::UniformBuffer { buffer } | Bound::Storage { buffer, .. } => visit(buffer),
+                Bound::Texture { view, .. } | Bound::StorageTexture { view, .. } => visit(&mut view.object),
+                Bound::Uniform { .. } | Bound::Sampler { .. } => {}
+            }
+        }
+    }
+    match kind {
+        PassKind::Compute { shader: s, .. } => shader(s, visit),
+        PassKind::Draw(draw) => {
+            shader(&mut draw.shader, visit);
+            match &mut draw.geometry {
+                Geometry::Indexed { indices, .. } | Geometry::Indirect { indices: Some(indices), .. } => visit(indices),
+                _ => {}
+            }
+            for target in &mut draw.color {
+                visit(&mut target.view.object);
+                if let Some(resolve) = &mut target.resolve {
+                    visit(&mut resolve.object);
+                }
+            }
+            if let Some(depth) = &mut draw.depth {
+                visit(&mut depth.view.object);
+            }
+        }
+        PassKind::Clear { view, .. } => visit(&mut view.object),
+        PassKind::Copy { from, to } => {
+            visit(&mut from.object);
+            visit(&mut to.object);
+        }
+        PassKind::Mips { texture } => visit(texture),
+        PassKind::Settle { counted, .. } => visit(counted),
+        PassKind::Arguments { from, .. } => visit(from),
+    }
+}

@@ -1,0 +1,145 @@
+//! The stand-in scene, and the variants of it that are checked.
+
+use wgpu_types::{Features, Limits};
+
+use crate::graph::model::{InputKind, ParamKind};
+use crate::graph::value::Value;
+use crate::plan::model::{InputInfo, Param, Request};
+use crate::program::Program;
+
+/// A scene that has everything that the graph asks for, also what is optional.
+pub(super) fn base(program: &Program) -> Request {
+    let mut request = Request {
+        viewport: [640, 480],
+        params: Default::default(),
+        inputs: Default::default(),
+        capacities: Default::default(),
+        roots: Vec::new(),
+        features: Features::all(),
+        limits: unlimited(),
+    };
+    for input in &program.root.inputs {
+        if let Some(info) = stand_in(program, &input.kind) {
+            request.inputs.insert(input.name.value.clone(), info);
+        }
+    }
+    request
+}
+
+fn stand_in(program: &Program, kind: &InputKind) -> Option<InputInfo> {
+    match kind {
+        InputKind::Camera => Some(InputInfo::Camera),
+        InputKind::Light => Some(InputInfo::Light),
+        InputKind::Pointer => Some(InputInfo::Pointer),
+        InputKind::Particles { .. } => Some(InputInfo::Particles {
+            count: 4096,
+            radius: 0.025,
+            min: [-0.4, 0.0, -0.4],
+            max: [0.4, 0.8, 0.4],
+            // How many numbers an attribute has is not known here: 0 fits all.
+            attributes: attributes(program, true).into_iter().map(|name| (name, 0)).collect(),
+        }),
+        InputKind::Texture { dimension } => {
+            Some(InputInfo::Texture(crate::plan::stand_in_texture(dimension.as_ref().map(|d| d.value))))
+        }
+        InputKind::Buffer | InputKind::Counted => Some(InputInfo::Buffer { items: 1000, stride: 4 }),
+        InputKind::Table => Some(InputInfo::Table { rows: vec![Default::default(); 4] }),
+    }
+}
+
+/// Attributes that any graph of the program asks for.
+fn attributes(program: &Program, optional_too: bool) -> Vec<String> {
+    let mut names = Vec::new();
+    for input in program.graphs().flat_map(|g| &g.inputs) {
+        if let InputKind::Particles { attributes } = &input.kind {
+            names.extend(attributes.iter().filter(|a| optional_too || !a.optional).map(|a| a.name.value.clone()));
+        }
+    }
+    names.sort();
+    names.dedup();
+    names
+}
+
+/// One thing at a time otherwise, with words that say what.
+pub(super) fn others(program: &Program, base: &Request, params: &[Param]) -> Vec<(String, Request)> {
+    let mut all = Vec::new();
+    for param in params {
+        for value in other_values(param) {
+            let mut request = base.clone();
+            request.params.insert(param.path.clone(), value.clone());
+            all.push((format!("`{}` = {value}", param.path), request));
+        }
+    }
+    for input in program.root.inputs.iter().filter(|i| i.optional) {
+        let mut request = base.clone();
+        request.inputs.remove(&input.name.value);
+        all.push((format!("`{}` absent", input.name.value), request));
+    }
+    let needed = attributes(program, false);
+    if needed.len() < attributes(program, true).len() {
+        let mut request = base.clone();
+        for info in request.inputs.values_mut() {
+            if let InputInfo::Particles { attributes, .. } = info {
+                attributes.retain(|(name, _)| needed.contains(name));
+            }
+        }
+        all.push(("no optional attribute".to_owned(), request));
+    }
+    let mut empty = base.clone();
+    for info in empty.inputs.values_mut() {
+        if let InputInfo::Particles { count, .. } = info {
+            *count = 0;
+        }
+    }
+    if empty.inputs != base.inputs {
+        all.push(("zero particles".to_owned(), empty));
+    }
+    let mut small = base.clone();
+    small.viewport = [1, 1];
+    all.push(("a viewport of 1 x 1".to_owned(), small));
+    all
+}
+
+/// Minimum, maximum, and the other words of a choice.
+fn other_values(param: &Param) -> Vec<Value> {
+    let mut values = match &param.kind {
+        ParamKind::Bool => vec![Value::Bool(false), Value::Bool(true)],
+        ParamKind::Choice(words) => words.iter().map(|w| Value::Word(w.value.clone())).collect(),
+        _ => param
+            .min
+            .iter()
+            .chain(&param.max)
+            .map(|bound| match (&param.value, bound.as_f64()) {
+                (Value::Vector(v), Some(x)) => Value::vec(vec![x; v.len()]),
+                _ => bound.clone(),
+            })
+            .collect(),
+    };
+    values.retain(|value| *value != param.value);
+    values
+}
+
+/// A device that can do everything: what a graph needs is reported, not refused.
+fn unlimited() -> Limits {
+    Limits {
+        max_texture_dimension_2d: u32::MAX,
+        max_texture_dimension_3d: u32::MAX,
+        max_texture_array_layers: u32::MAX,
+        max_buffer_size: u64::MAX,
+        max_color_attachments: u32::MAX,
+        max_color_attachment_bytes_per_sample: u32::MAX,
+        max_compute_invocations_per_workgroup: u32::MAX,
+        max_compute_workgroup_size_x: u32::MAX,
+        max_compute_workgroup_size_y: u32::MAX,
+        max_compute_workgroup_size_z: u32::MAX,
+        max_compute_workgroup_storage_size: u32::MAX,
+        max_uniform_buffers_per_shader_stage: u32::MAX,
+        max_uniform_buffer_binding_size: u32::MAX.into(),
+        max_storage_buffers_per_shader_stage: u32::MAX,
+        max_storage_buffer_binding_size: u32::MAX.into(),
+        max_sampled_textures_per_shader_stage: u32::MAX,
+        max_storage_textures_per_shader_stage: u32::MAX,
+        max_samplers_per_shader_stage: u32::MAX,
+        ..Limits::default()
+    }
+}

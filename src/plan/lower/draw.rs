@@ -1,0 +1,603 @@
+//! Draws: entry points, geometry, targets, depth and stencil.
+
+use wgpu_types::{BufferUsages, Features, ShaderStages, TextureUsages};
+
+use super::bind::Stages;
+use super::extent::Items;
+use super::nodes::{Draft, whole_write};
+use super::{Lowering, Place, Result, ScopeId, fault, traced};
+use crate::diagnostic::{Code, Span};
+use crate::format::{self, SampleKind, TextureFormat};
+use crate::graph::model::{self as ast, Node};
+use crate::plan::model::{
+    Access, ArgumentKind, ColorTarget, DepthTarget, Draw, Geometry, ObjectKind, ObjectRef, PassKind, ShaderUse,
+    Stencil, Texture, View,
+};
+use crate::shader::reflect::{Entry, Io, Scalar, Stage, Type};
+
+/// Bytes of one item of indirect arguments: draw, and draw with indices.
+const DRAW_BYTES: u64 = 16;
+const DRAW_INDEXED_BYTES: u64 = 20;
+
+impl Lowering<'_> {
+    pub(super) fn draw(&mut self, s: ScopeId, draw: &ast::Draw, node: &Node, fullscreen: bool) -> Result<Draft> {
+        let module = self.shader_module(s, &draw.shader)?;
+        let vertex = if fullscreen { None } else { self.entry(s, &module, &draw.shader, Stage::Vertex, true)? };
+        let fragment = self.entry(s, &module, &draw.shader, Stage::Fragment, fullscreen)?;
+        let mut entries = Vec::new();
+        entries.extend(vertex.map(|e| (ShaderStages::VERTEX, e)));
+        entries.extend(fragment.clone().map(|e| (ShaderStages::FRAGMENT, e)));
+        let stages = Stages { module, entries, at: node.word };
+        self.check_interface(s, &stages, fullscreen)?;
+
+        let placeholder =
+            ShaderUse { module: 0, compute: None, vertex: None, fragment: None, constants: vec![], bindings: vec![] };
+        let mut draft = Draft::new(PassKind::Compute {
+            shader: placeholder,
+            dispatch: crate::plan::model::Dispatch::Groups([0; 3]),
+        });
+        let shader = self.feed(s, &stages, &draw.bind, &mut draft);
+        let geometry = if fullscreen { Geometry::Fullscreen } else { self.geometry(s, draw, node.word, &mut draft)? };
+        let covers = fullscreen && draw.region.is_none() && !fragment.as_ref().is_some_and(|f| f.discards);
+        let color = self.targets(s, draw, fragment.as_ref(), covers, node.word, &mut draft)?;
+        let depth = self.depth(s, draw, fragment.as_ref(), &mut draft)?;
+        let (extent, samples) = self.extent(s, draw, &color, depth.as_ref(), node.word)?;
+        let region = self.region(s, draw, extent, &mut draft)?;
+        draft.kind = PassKind::Draw(Box::new(Draw {
+            shader,
+            geometry,
+            topology: draw.topology,
+            cull: draw.cull,
+            front_ccw: draw.front_ccw,
+            color,
+            depth,
+            samples,
+            region,
+            extent,
+        }));
+        Ok(draft)
+    }
+
+    /// What the vertex stage hands on must be what the fragment stage takes.
+    fn check_interface(&self, s: ScopeId, stages: &Stages, fullscreen: bool) -> Result<()> {
+        let find = |stage| stages.entries.iter().find(|(s, _)| *s == stage).map(|(_, e)| e);
+        let Some(fragment) = find(ShaderStages::FRAGMENT) else { return Ok(()) };
+        let vertex = find(ShaderStages::VERTEX);
+        let uv = Io {
+            location: 0,
+            name: "uv".into(),
+            ty: Type::Vector { components: 2, scalar: Scalar::F32 },
+            span: fragment.span,
+        };
+        let given: Vec<&Io> = if fullscreen { vec![&uv] } else { vertex.iter().flat_map(|v| &v.outputs).collect() };
+        for input in &fragment.inputs {
+            let from = given.iter().find(|io| io.location == input.location);
+            if from.is_some_and(|io| io.ty == input.ty) {
+                continue;
+            }
+            let found = from.map_or("nothing".to_owned(), |io| format!("`{}`", io.ty.wgsl()));
+            let message = format!(
+                "the fragment stage takes `{}` at location {}, and the vertex stage hands on {found}",
+                input.ty.wgsl(),
+                input.location
+            );
+            let mut diagnostic = fault(Code::ENTRY_POINT, message, input.span, "taken here");
+            if let Some(io) = from.filter(|_| !fullscreen) {
+                diagnostic = diagnostic.see(io.span, "handed on here");
+            }
+            if fullscreen {
+                diagnostic = diagnostic.hint("`Fullscreen` hands on `@location(0) uv: vec2<f32>` and nothing else");
+            }
+            return Err(traced(diagnostic.see(stages.at, "run by this pass"), &self.scopes[s].trace));
+        }
+        match vertex.filter(|v| !v.inputs.is_empty()) {
+            Some(vertex) => {
+                let io = &vertex.inputs[0];
+                let message = format!("nothing feeds the vertex input `{}`", io.name);
+                let diagnostic = fault(Code::UNBOUND, message, io.span, "vertex input")
+                    .see(stages.at, "run by this pass")
+                    .hint("vertices come from `@builtin(vertex_index)` and storage buffers");
+                Err(traced(diagnostic, &self.scopes[s].trace))
+            }
+            None => Ok(()),
+        }
+    }
+
+    fn geometry(&mut self, s: ScopeId, draw: &ast::Draw, word: Span, draft: &mut Draft) -> Result<Geometry> {
+        let indices = match &draw.indices {
+            Some(name) => {
+                let view = ast::View { of: name.clone(), mip: None, layer: None, span: name.span };
+                let viewed = self.view(s, &view)?;
+                self.buffer_read(s, viewed.view.object, name, draft)?;
+                self.buffer_usage(viewed.view.object, BufferUsages::INDEX);
+                Some(viewed.view.object)
+            }
+            None => None,
+        };
+        if let Some(indirect) = &draw.indirect {
+            return self.indirect(s, indirect, indices, draft);
+        }
+        let instances = match &draw.instances {
+            Some(count) => self.count(s, count, "the number of instances", draft)?,
+            None => Items::Known(1),
+        };
+        let vertices = match (&draw.vertices, indices) {
+            (Some(count), _) => self.count(s, count, "the number of vertices", draft)?,
+            (None, Some(object)) => match &self.object(object).object.kind {
+                ObjectKind::Buffer(b) if b.counted => Items::Counted(object, b.items),
+                ObjectKind::Buffer(b) => Items::Known(b.items),
+                ObjectKind::Texture(_) => Items::Known(0),
+            },
+            (None, None) => {
+                let diagnostic = fault(Code::MISSING_FIELD, "a draw needs `vertices`", word, "this draw")
+                    .hint("say `vertices: 3`, `vertices: Each(\"...\")`, `indices: \"...\"` or `draw: Indirect(...)`");
+                return Err(traced(diagnostic, &self.scopes[s].trace));
+            }
+        };
+        let number = |n: u64| u32::try_from(n).unwrap_or(u32::MAX);
+        match (vertices, instances) {
+            (Items::Known(v), Items::Known(i)) => Ok(match indices {
+                Some(indices) => Geometry::Indexed { indices, count: number(v), instances: number(i) },
+                None => Geometry::Direct { vertices: number(v), instances: number(i) },
+            }),
+            (Items::Counted(..), Items::Counted(..)) => {
+                let message = "vertices and instances cannot both come from counted buffers";
+                Err(traced(fault(Code::BAD_PASS, message, word, "this draw"), &self.scopes[s].trace))
+            }
+            (Items::Counted(object, _), Items::Known(i)) => {
+                let kind =
+                    ArgumentKind::Draw { vertices: None, instances: Some(number(i)), indexed: indices.is_some() };
+                draft.counted.push((object, kind));
+                Ok(Geometry::Indirect { slot: u32::MAX, indices })
+            }
+            (Items::Known(v), Items::Counted(object, _)) => {
+                let kind =
+                    ArgumentKind::Draw { vertices: Some(number(v)), instances: None, indexed: indices.is_some() };
+                draft.counted.push((object, kind));
+                Ok(Geometry::Indirect { slot: u32::MAX, indices })
+            }
+        }
+    }
+
+    /// Reads a whole buffer, as indices or as arguments.
+    fn buffer_read(&mut self, s: ScopeId, object: ObjectRef, name: &ast::Name, draft: &mut Draft) -> Result<()> {
+        if !matches!(&self.object(object).object.kind, ObjectKind::Buffer(_)) {
+            let message = format!("`{}` is {}, not a buffer", name.value, self.describe_object(object));
+            return Err(traced(fault(Code::WRONG_KIND, message, name.span, "not a buffer"), &self.scopes[s].trace));
+        }
+        let access = Access { object, mips: 0..1, layers: 0..1, read: true, write: false, whole: false };
+        draft.accesses.push((access, Place::at(name.span, &name.value, false)));
+        draft.causes.add(&self.object(object).causes.clone());
+        Ok(())
+    }
+
+    fn indirect(
+        &mut self,
+        s: ScopeId,
+        indirect: &ast::Indirect,
+        indices: Option<ObjectRef>,
+        draft: &mut Draft,
+    ) -> Result<Geometry> {
+        let view = ast::View { of: indirect.buffer.clone(), mip: None, layer: None, span: indirect.buffer.span };
+        let object = self.view(s, &view)?.view.object;
+        self.buffer_read(s, object, &indirect.buffer, draft)?;
+        let item = match &indirect.item {
+            Some(expr) => {
+                let (item, causes) = self.whole(s, expr, "the item", 0)?;
+                draft.causes.add(&causes);
+                item as u64
+            }
+            None => 0,
+        };
+        let ObjectKind::Buffer(buffer) = &self.object(object).object.kind else { return Ok(Geometry::Fullscreen) };
+        if item >= buffer.items {
+            let at = indirect.item.as_ref().map_or(indirect.span, |e| e.span);
+            let message =
+                format!("`{}` has {} items, and item {item} is asked for", indirect.buffer.value, buffer.items);
+            return Err(traced(
+                fault(Code::OUT_OF_RANGE, message, at, format!("this is {item}")),
+                &self.scopes[s].trace,
+            ));
+        }
+        let bytes = if indices.is_some() { DRAW_INDEXED_BYTES } else { DRAW_BYTES };
+        if u64::from(buffer.stride) < bytes && self.object(object).layout.is_some() {
+            let message = format!(
+                "an item of `{}` has {} bytes, and a draw's arguments have {bytes}",
+                indirect.buffer.value, buffer.stride
+            );
+            let diagnostic = fault(Code::BINDING_MISMATCH, message, indirect.span, "arguments of this draw")
+                .hint("import \"lib/indirect.wgsl\" and declare `array<DrawArgs>`");
+            return Err(traced(diagnostic, &self.scopes[s].trace));
+        }
+        self.buffer_usage(object, BufferUsages::STORAGE);
+        let offset = u64::from(buffer_header(&self.object(object).object.kind)) + item * stride(self, object);
+        draft.arguments = Some((object, offset, indices.is_some()));
+        Ok(Geometry::Indirect { slot: u32::MAX, indices })
+    }
+
+    fn targets(
+        &mut self,
+        s: ScopeId,
+        draw: &ast::Draw,
+        fragment: Option<&Entry>,
+        covers: bool,
+        word: Span,
+        draft: &mut Draft,
+    ) -> Result<Vec<ColorTarget>> {
+        let mut targets = Vec::new();
+        for (i, target) in draw.color.iter().enumerate() {
+            let output = fragment.and_then(|f| f.outputs.iter().find(|o| o.location as usize == i));
+            let made = self.target(s, target, i, fragment, output, covers, draft);
+            targets.extend(self.report(made));
+        }
+        for output in fragment.iter().flat_map(|f| &f.outputs) {
+            if output.location as usize >= draw.color.len() {
+                let message = format!(
+                    "the fragment stage puts out `@location({})`, and the pass has {} colour targets",
+                    output.location,
+                    draw.color.len()
+                );
+                let diagnostic = fault(Code::TARGET_MISMATCH, message, output.span, "put out here")
+                    .see(word, "this pass")
+                    .hint("add a target to `color`, or drop the output");
+                return Err(traced(diagnostic, &self.scopes[s].trace));
+            }
+        }
+        Ok(targets)
+    }
+
+    #[expect(clippy::too_many_arguments, reason = "one target with everything that it must fit")]
+    fn target(
+        &mut self,
+        s: ScopeId,
+        target: &ast::Target,
+        location: usize,
+        fragment: Option<&Entry>,
+        output: Option<&Io>,
+        covers: bool,
+        draft: &mut Draft,
+    ) -> Result<ColorTarget> {
+        let (view, texture) = self.target_view(s, &target.to, draft)?;
+        let format = texture.format;
+        let declared = self.object(view.object).object.span;
+        if format.is_depth_stencil_format() || !format::is_renderable(format, Features::all()) {
+            let message = format!("{} cannot be a colour target", format::name(format));
+            let diagnostic =
+                fault(Code::FORMAT, message, target.span, "a colour target").see(declared, "declared here");
+            return Err(traced(diagnostic, &self.scopes[s].trace));
+        }
+        if texture.is_3d {
+            let diagnostic = fault(Code::FORMAT, "a 3D texture cannot be a target", target.span, "a target")
+                .see(declared, "declared here")
+                .hint("render into the layers of a 2D array, or write a storage texture");
+            return Err(traced(diagnostic, &self.scopes[s].trace));
+        }
+        let Some(output) = output else {
+            let message = format!("nothing puts out `@location({location})` for `{}`", target.to.of.value);
+            let mut diagnostic = fault(Code::TARGET_MISMATCH, message, target.span, format!("target {location}"));
+            if let Some(fragment) = fragment {
+                diagnostic = diagnostic.see(fragment.span, "the fragment stage");
+            }
+            return Err(traced(diagnostic, &self.scopes[s].trace));
+        };
+        if !output_fits(&output.ty, format, target.blend.as_ref().map(|b| &b.value)) {
+            let message = format!(
+                "`{}` is {}, and the shader puts out `{}`",
+                target.to.of.value,
+                format::name(format),
+                output.ty.wgsl()
+            );
+            let diagnostic = fault(Code::TARGET_MISMATCH, message, output.span, format!("`{}`", output.ty.wgsl()))
+                .see(target.span, format!("target {location}"))
+                .see(declared, "declared here");
+            return Err(traced(diagnostic, &self.scopes[s].trace));
+        }
+        if let Some(blend) = &target.blend {
+            self.check_blend(s, format, blend.span, declared)?;
+        }
+        let clear = match &target.clear {
+            Some(value) => {
+                let (value, causes) = self.clear_value(s, &value.value)?;
+                draft.causes.add(&causes);
+                Some(value)
+            }
+            None => None,
+        };
+        let all = target.write == [true; 4];
+        let discard_before = clear.is_none() && covers && all && target.blend.is_none();
+        let whole = clear.is_some() || discard_before;
+        self.texture_usage(view.object, TextureUsages::RENDER_ATTACHMENT);
+        let access = Access { read: !whole, whole, ..whole_write(&view) };
+        draft.accesses.push((access, Place::at(target.span, &target.to.of.value, false)));
+        let resolve = match &target.resolve {
+            Some(resolve) => Some(self.resolve_target(s, resolve, &view, &texture, draft)?),
+            None => None,
+        };
+        Ok(ColorTarget {
+            view,
+            format,
+            clear,
+            discard_before,
+            blend: target.blend.as_ref().map(|b| b.value),
+            write: target.write,
+            resolve,
+        })
+    }
+
+    fn check_blend(&mut self, s: ScopeId, format: TextureFormat, at: Span, declared: Span) -> Result<()> {
+        if format::is_blendable(format, Features::empty()) {
+            return Ok(());
+        }
+        if format::is_float32(format) {
+            self.features |= Features::FLOAT32_BLENDABLE;
+            return Ok(());
+        }
+        let message = format!("{} cannot blend", format::name(format));
+        let diagnostic = fault(Code::FORMAT, message, at, "blends").see(declared, "declared here");
+        Err(traced(diagnostic, &self.scopes[s].trace))
+    }
+
+    fn resolve_target(
+        &mut self,
+        s: ScopeId,
+        resolve: &ast::View,
+        from: &View,
+        texture: &Texture,
+        draft: &mut Draft,
+    ) -> Result<View> {
+        let (view, to) = self.target_view(s, resolve, draft)?;
+        let size = |t: &Texture, v: &View| ((t.width >> v.mips.start).max(1), (t.height >> v.mips.start).max(1));
+        if texture.samples != 4
+            || to.samples != 1
+            || to.format != texture.format
+            || size(&to, &view) != size(texture, from)
+        {
+            let message = format!("`{}` cannot take the resolved samples", resolve.of.value);
+            let diagnostic = fault(Code::TARGET_MISMATCH, message, resolve.span, self.describe_object(view.object))
+                .see(self.object(from.object).object.span, self.describe_object(from.object))
+                .hint("resolve 4 samples into a texture of the same format and size without samples");
+            return Err(traced(diagnostic, &self.scopes[s].trace));
+        }
+        self.texture_usage(view.object, TextureUsages::RENDER_ATTACHMENT);
+        draft.accesses.push((whole_write(&view), Place::at(resolve.span, &resolve.of.value, false)));
+        Ok(view)
+    }
+
+    /// A view that a draw can write: one mip, one layer.
+    fn target_view(&mut self, s: ScopeId, at: &ast::View, draft: &mut Draft) -> Result<(View, Texture)> {
+        let mut viewed = self.view(s, at)?;
+        draft.causes.add(&viewed.causes);
+        let ObjectKind::Texture(texture) = self.object(viewed.view.object).object.kind.clone() else {
+            let message = format!("`{}` is a buffer and cannot be a target", at.of.value);
+            return Err(traced(fault(Code::WRONG_KIND, message, at.span, "a target"), &self.scopes[s].trace));
+        };
+        if !viewed.mip_said {
+            viewed.view.mips = 0..1;
+        }
+        if viewed.view.layers.len() > 1 {
+            let message = format!("`{}` has {} layers, and a target is one", at.of.value, viewed.view.layers.len());
+            let diagnostic = fault(Code::BAD_PASS, message, at.span, "which layer?")
+                .hint(format!("say `(to: \"{}\", layer: 0)`", at.of.value));
+            return Err(traced(diagnostic, &self.scopes[s].trace));
+        }
+        viewed.view.dimension = crate::shader::reflect::TextureDimension::D2;
+        Ok((viewed.view, texture))
+    }
+
+    fn depth(
+        &mut self,
+        s: ScopeId,
+        draw: &ast::Draw,
+        fragment: Option<&Entry>,
+        draft: &mut Draft,
+    ) -> Result<Option<DepthTarget>> {
+        let Some(depth) = &draw.depth else {
+            if let Some(fragment) = fragment.filter(|f| f.writes_frag_depth) {
+                let message = "the fragment stage writes `frag_depth`, and the pass has no depth target";
+                let diagnostic = fault(Code::TARGET_MISMATCH, message, fragment.span, "writes depth")
+                    .hint("say `depth: Nearest(\"...\")`");
+                return Err(traced(diagnostic, &self.scopes[s].trace));
+            }
+            return Ok(None);
+        };
+        let (view, texture) = self.target_view(s, &depth.to, draft)?;
+        let format = texture.format;
+        let declared = self.object(view.object).object.span;
+        if !format.has_depth_aspect() {
+            let message = format!("{} has no depth", format::name(format));
+            let diagnostic = fault(Code::FORMAT, message, depth.span, "the depth target")
+                .see(declared, "declared here")
+                .hint("declare it as Depth32Float");
+            return Err(traced(diagnostic, &self.scopes[s].trace));
+        }
+        if depth.stencil.is_some() && !format.has_stencil_aspect() {
+            let message = format!("{} has no stencil", format::name(format));
+            let diagnostic = fault(Code::FORMAT, message, depth.span, "tests stencil")
+                .see(declared, "declared here")
+                .hint("declare it as Depth24PlusStencil8 or Depth32FloatStencil8");
+            return Err(traced(diagnostic, &self.scopes[s].trace));
+        }
+        let clear = match &depth.clear {
+            Some(expr) => {
+                let clear = self.plain(s, expr, &mut draft.causes)?;
+                if !(0.0..=1.0).contains(&clear) {
+                    let message = format!("depth clears to a value from 0 to 1, not {clear}");
+                    return Err(traced(
+                        fault(Code::OUT_OF_RANGE, message, expr.span, "the value"),
+                        &self.scopes[s].trace,
+                    ));
+                }
+                Some(clear as f32)
+            }
+            None => None,
+        };
+        let bias = match &depth.bias {
+            Some((constant, slope)) => {
+                (self.plain(s, constant, &mut draft.causes)? as i32, self.plain(s, slope, &mut draft.causes)? as f32)
+            }
+            None => (0, 0.0),
+        };
+        let stencil = match &depth.stencil {
+            Some(stencil) => Some(self.stencil(s, stencil, draft)?),
+            None => None,
+        };
+        self.texture_usage(view.object, TextureUsages::RENDER_ATTACHMENT);
+        if format == TextureFormat::Depth32FloatStencil8 {
+            self.features |= Features::DEPTH32FLOAT_STENCIL8;
+        }
+        let writes = depth.write || clear.is_some() || stencil.as_ref().is_some_and(Stencil::writes);
+        let whole = clear.is_some();
+        let access = Access { read: !whole, write: writes, whole, ..whole_write(&view) };
+        draft.accesses.push((access, Place::at(depth.span, &depth.to.of.value, false)));
+        Ok(Some(DepthTarget { view, format, compare: depth.compare, write: depth.write, clear, bias, stencil }))
+    }
+
+    fn stencil(&mut self, s: ScopeId, stencil: &ast::Stencil, draft: &mut Draft) -> Result<Stencil> {
+        let (reference, causes) = self.whole(s, &stencil.reference, "the stencil reference", 0)?;
+        draft.causes.add(&causes);
+        let clear = match &stencil.clear {
+            Some(expr) => {
+                let (clear, causes) = self.whole(s, expr, "the stencil's clear value", 0)?;
+                draft.causes.add(&causes);
+                Some(clear as u32)
+            }
+            None => None,
+        };
+        Ok(Stencil {
+            compare: stencil.compare,
+            pass: stencil.pass,
+            fail: stencil.fail,
+            depth_fail: stencil.depth_fail,
+            reference: reference as u32,
+            read_mask: stencil.read_mask,
+            write_mask: stencil.write_mask,
+            clear,
+        })
+    }
+
+    /// All targets of a draw have one size and one number of samples.
+    fn extent(
+        &self,
+        s: ScopeId,
+        draw: &ast::Draw,
+        color: &[ColorTarget],
+        depth: Option<&DepthTarget>,
+        word: Span,
+    ) -> Result<([u32; 2], u32)> {
+        let mut first: Option<(Span, String, [u32; 2], u32)> = None;
+        let spans = draw.color.iter().map(|t| (t.span, t.to.of.value.as_str()));
+        let depth_span = draw.depth.iter().map(|d| (d.span, d.to.of.value.as_str()));
+        let views = color.iter().map(|t| &t.view).chain(depth.map(|d| &d.view));
+        for ((span, name), view) in spans.take(color.len()).chain(depth_span).zip(views) {
+            let ObjectKind::Texture(t) = &self.object(view.object).object.kind else { continue };
+            let mip = view.mips.start;
+            let size = [(t.width >> mip).max(1), (t.height >> mip).max(1)];
+            match &first {
+                None => first = Some((span, name.to_owned(), size, t.samples)),
+                Some((_, _, other, samples)) if *other == size && *samples == t.samples => {}
+                Some((at, other, wanted, samples)) => {
+                    let message = format!("the targets `{other}` and `{name}` are not of one size");
+                    let label = |size: [u32; 2], n: u32| format!("{} x {}, {n} samples", size[0], size[1]);
+                    let diagnostic = fault(Code::TARGET_MISMATCH, message, span, label(size, t.samples))
+                        .see(*at, label(*wanted, *samples));
+                    return Err(traced(diagnostic, &self.scopes[s].trace));
+                }
+            }
+        }
+        match first {
+            Some((_, _, size, samples)) => Ok((size, samples)),
+            None => {
+                let diagnostic =
+                    fault(Code::BAD_PASS, "a draw needs a colour or depth target", word, "draws to nothing");
+                Err(traced(diagnostic, &self.scopes[s].trace))
+            }
+        }
+    }
+
+    fn region(
+        &mut self,
+        s: ScopeId,
+        draw: &ast::Draw,
+        extent: [u32; 2],
+        draft: &mut Draft,
+    ) -> Result<Option<[u32; 4]>> {
+        let Some(region) = &draw.region else { return Ok(None) };
+        let mut edges = Vec::new();
+        for expr in &region.value {
+            let (value, causes) = self.known(s, expr)?;
+            draft.causes.add(&causes);
+            for component in value.components() {
+                match component {
+                    crate::graph::value::Value::Int(n) => edges.push((*n, expr)),
+                    _ => return Err(self.mistyped(s, expr, "whole pixels", &value)),
+                }
+            }
+        }
+        let fits = match edges.as_slice() {
+            [(x, _), (y, _), (w, _), (h, _)] => {
+                *x >= 0
+                    && *y >= 0
+                    && *w >= 1
+                    && *h >= 1
+                    && x + w <= i64::from(extent[0])
+                    && y + h <= i64::from(extent[1])
+            }
+            _ => false,
+        };
+        if !fits {
+            let numbers: Vec<String> = edges.iter().map(|(n, _)| n.to_string()).collect();
+            let message = format!(
+                "the region ({}) is not x, y, width and height inside {} x {} pixels",
+                numbers.join(", "),
+                extent[0],
+                extent[1]
+            );
+            return Err(traced(fault(Code::OUT_OF_RANGE, message, region.span, "the region"), &self.scopes[s].trace));
+        }
+        Ok(Some([edges[0].0 as u32, edges[1].0 as u32, edges[2].0 as u32, edges[3].0 as u32]))
+    }
+}
+
+impl Stencil {
+    /// Whether it can change what is there.
+    pub fn writes(&self) -> bool {
+        use crate::graph::model::StencilOperation::Keep;
+        self.clear.is_some() || [self.pass, self.fail, self.depth_fail].iter().any(|op| *op != Keep)
+    }
+}
+
+fn buffer_header(kind: &ObjectKind) -> u32 {
+    match kind {
+        ObjectKind::Buffer(b) => b.header,
+        ObjectKind::Texture(_) => 0,
+    }
+}
+
+fn stride(low: &Lowering<'_>, object: ObjectRef) -> u64 {
+    match &low.object(object).object.kind {
+        ObjectKind::Buffer(b) => u64::from(b.stride),
+        ObjectKind::Texture(_) => 0,
+    }
+}
+
+/// Whether a fragment output can go to a format: the same kind of numbers, channels enough, and
+/// an alpha where blending reads it.
+fn output_fits(ty: &Type, format: TextureFormat, blend: Option<&ast::Blend>) -> bool {
+    let (components, scalar) = match ty {
+        Type::Scalar(scalar) => (1, *scalar),
+        Type::Vector { components, scalar } => (*components, *scalar),
+        _ => return false,
+    };
+    let kind = match scalar {
+        Scalar::F32 | Scalar::F16 => SampleKind::Float,
+        Scalar::I32 => SampleKind::Sint,
+        Scalar::U32 => SampleKind::Uint,
+        Scalar::Other => return false,
+    };
+    let alpha = blend.is_some_and(|b| {
+        [b.color.source, b.color.target, b.alpha.source, b.alpha.target]
+            .iter()
+            .any(|f| matches!(f, ast::Factor::SrcAlpha | ast::Factor::OneMinusSrcAlpha))
+    });
+    format::sample_kind(format) == kind && components >= format::channels(format) && (!alpha || components == 4)
+}

@@ -1,0 +1,292 @@
+//! Lowering: flattens parts, takes branches, unrolls loops, evaluates every expression and binds
+//! every shader, giving the flat list of passes that all later steps work on.
+//!
+//! A graph instance is a [`Scope`]; its resources are variables whose memory swaps change as the
+//! list is walked. Resources, `let` names and the scopes of parts are made when something first
+//! asks for them, so the order of declarations does not matter.
+
+mod bind;
+mod draw;
+mod extent;
+mod names;
+mod nodes;
+mod scalars;
+mod uniform;
+mod vars;
+
+use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::sync::Arc;
+
+pub(super) use names::{Entity, list};
+pub(crate) use vars::stand_in_texture;
+
+use super::model::{self, Causes, ObjectId, ObjectRef, Pass, Request, UniformBlock};
+use crate::diagnostic::{Code, Diagnostic, Diagnostics, Span};
+use crate::graph::expr::Expr;
+use crate::graph::model::{Graph, Name, Sampler};
+use crate::graph::value::Value;
+use crate::program::Program;
+use crate::shader::reflect::{Module, Type};
+
+pub(super) type ScopeId = usize;
+pub(super) type VarId = usize;
+
+/// Without a `Result`, a fault is pushed to [`Lowering::diagnostics`] and the thing is left out.
+pub(super) type Result<T> = std::result::Result<T, Box<Diagnostic>>;
+
+/// What a flat pass is before units are known.
+#[derive(Clone, Debug)]
+pub(super) struct FlatPass {
+    pub pass: Pass,
+    /// What it depends on from outside the graph, by itself.
+    pub causes: Causes,
+    /// The first word of its declaration.
+    pub word: Span,
+    /// Where the parts that it lies in are used, outermost first.
+    pub trace: Vec<Span>,
+    /// A counted buffer whose count decides how much it does, and how.
+    pub counted: Vec<(ObjectRef, model::ArgumentKind)>,
+    /// Arguments of its own that a shader wrote: buffer, byte offset, indexed.
+    pub arguments: Option<(ObjectRef, u64, bool)>,
+    /// Where each access comes from, beside `pass.accesses`.
+    pub places: Vec<Place>,
+}
+
+/// Where an access is written down.
+#[derive(Clone, Debug)]
+pub(super) struct Place {
+    /// In the graph: the pass, the target or the `bind` entry.
+    pub graph: Span,
+    /// The shader's variable, if one accesses.
+    pub shader: Option<Span>,
+    /// How messages call it.
+    pub name: String,
+    /// Texture sampled with more than mip 0 in view: automatic mips must be made before.
+    pub samples_mips: bool,
+    /// Appends to a counted buffer, or otherwise writes its count.
+    pub appends: bool,
+}
+
+/// A graph instance: the root, or a part at one place.
+#[derive(Debug)]
+pub(super) struct Scope {
+    pub graph: Arc<Graph>,
+    /// Instance path; empty for the root.
+    pub path: String,
+    pub parent: Option<ScopeId>,
+    /// The `Use`s that lead here, outermost first.
+    pub trace: Vec<Span>,
+    /// What each name declared in this file is.
+    pub locals: HashMap<String, names::Local>,
+    /// Inputs by name to names of the parent.
+    pub binds: BTreeMap<String, Name>,
+    /// Parameters that the `Use` gave.
+    pub given: BTreeMap<String, (Scalar, Span)>,
+    pub counters: Vec<(String, i64)>,
+    pub children: BTreeMap<String, ScopeId>,
+    pub resources: Vec<Option<VarId>>,
+    lets: Vec<LetState>,
+}
+
+#[derive(Clone, Debug)]
+enum LetState {
+    Waiting,
+    Evaluating,
+    Known(Scalar),
+}
+
+/// A value of the scalar language with what it depends on.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Scalar {
+    pub value: model::UniformValue,
+    pub causes: Causes,
+}
+
+/// A texture or buffer under a name; swaps change which memory it has.
+#[derive(Clone, Debug)]
+pub(super) struct Var {
+    pub now: ObjectRef,
+}
+
+/// An object while its layout and usages are still being found out.
+#[derive(Debug)]
+pub(super) struct Building {
+    pub object: model::Object,
+    /// What the first shader that binds the buffer says of it, and where.
+    pub layout: Option<Layout>,
+    pub mips_auto: bool,
+    /// A stand-in for an input that nothing describes: takes the format that a shader wants.
+    pub adapts: bool,
+    /// What its size depends on.
+    pub causes: Causes,
+}
+
+#[derive(Clone, Debug)]
+pub(super) struct Layout {
+    pub header: u32,
+    pub stride: u32,
+    pub item: Type,
+    pub span: Span,
+}
+
+pub(super) struct Lowering<'a> {
+    pub program: &'a Program,
+    pub request: &'a Request,
+    /// Nothing outside is known: what is missing is made up. For checking a file by itself.
+    pub stand_in: bool,
+    pub scopes: Vec<Scope>,
+    pub vars: Vec<Var>,
+    pub objects: Vec<Building>,
+    pub flat: Vec<FlatPass>,
+    pub modules: Vec<Arc<Module>>,
+    pub uniforms: Vec<UniformBlock>,
+    pub samplers: Vec<Sampler>,
+    pub rings: Vec<model::Ring>,
+    pub steps: Vec<model::Steps>,
+    /// Objects whose names swap: each set counts as one.
+    pub swapped: Vec<BTreeSet<ObjectId>>,
+    pub params: BTreeMap<String, model::Param>,
+    pub features: wgpu_types::Features,
+    pub diagnostics: Diagnostics,
+    /// Declarations that something asked for, for "unused".
+    pub used: BTreeSet<Span>,
+    /// Causes of the branches and loops around the node that is being lowered.
+    structure: Vec<Causes>,
+    in_steps: Option<usize>,
+    /// `[2]`, or `[2][0]` in a loop in a loop.
+    iteration: String,
+    /// Variables of root inputs: `particles.position`, `color`.
+    input_vars: BTreeMap<String, VarId>,
+}
+
+impl<'a> Lowering<'a> {
+    pub fn new(program: &'a Program, request: &'a Request, stand_in: bool) -> Self {
+        Self {
+            program,
+            request,
+            stand_in,
+            scopes: Vec::new(),
+            vars: Vec::new(),
+            objects: Vec::new(),
+            flat: Vec::new(),
+            modules: Vec::new(),
+            uniforms: Vec::new(),
+            samplers: Vec::new(),
+            rings: Vec::new(),
+            steps: Vec::new(),
+            swapped: Vec::new(),
+            params: BTreeMap::new(),
+            features: wgpu_types::Features::empty(),
+            diagnostics: Diagnostics::new(),
+            used: BTreeSet::new(),
+            structure: Vec::new(),
+            in_steps: None,
+            iteration: String::new(),
+            input_vars: BTreeMap::new(),
+        }
+    }
+
+    /// Lowers the whole program. What has errors is left out and reported.
+    pub fn run(&mut self) {
+        let root = self.add_scope(self.program.root.clone(), String::new(), None, Vec::new());
+        self.check_inputs(root);
+        self.declare_params(root);
+        let passes = self.program.root.clone();
+        self.nodes(root, &passes.passes);
+        self.turn_rings_into_refs();
+    }
+
+    /// Keeps a fault; the caller leaves the thing out.
+    pub(super) fn report<T>(&mut self, result: Result<T>) -> Option<T> {
+        match result {
+            Ok(value) => Some(value),
+            Err(diagnostic) => {
+                self.diagnostics.push(*diagnostic);
+                None
+            }
+        }
+    }
+
+    /// The object behind a reference at the start of a frame: what description it has.
+    pub fn object(&self, object: ObjectRef) -> &Building {
+        &self.objects[self.object_id(object)]
+    }
+
+    pub fn object_id(&self, object: ObjectRef) -> ObjectId {
+        match object {
+            ObjectRef::Fixed(id) => id,
+            ObjectRef::Ring { ring, index } => self.rings[ring].objects[index],
+        }
+    }
+
+    /// Every object that a reference may stand for: one, or all of a ring.
+    pub fn object_ids(&self, object: ObjectRef) -> Vec<ObjectId> {
+        match object {
+            ObjectRef::Fixed(id) => vec![id],
+            ObjectRef::Ring { ring, .. } => self.rings[ring].objects.clone(),
+        }
+    }
+
+    /// Objects that came to be in a ring only after passes had named them become members of it.
+    fn turn_rings_into_refs(&mut self) {
+        let mut member = BTreeMap::new();
+        for (ring, r) in self.rings.iter().enumerate() {
+            for (index, object) in r.objects.iter().enumerate() {
+                member.insert(*object, ObjectRef::Ring { ring, index });
+            }
+        }
+        if member.is_empty() {
+            return;
+        }
+        let turn = |object: &mut ObjectRef| {
+            if let ObjectRef::Fixed(id) = object
+                && let Some(found) = member.get(id)
+            {
+                *object = *found;
+            }
+        };
+        for flat in &mut self.flat {
+            model::each_ref(&mut flat.pass.kind, &mut |object| turn(object));
+            flat.pass.accesses.iter_mut().for_each(|access| turn(&mut access.object));
+            flat.counted.iter_mut().for_each(|(object, _)| turn(object));
+            if let Some((object, _, _)) = &mut flat.arguments {
+                turn(object);
+            }
+        }
+        for var in &mut self.vars {
+            turn(&mut var.now);
+        }
+    }
+}
+
+impl Scalar {
+    pub fn known(value: Value) -> Self {
+        Self { value: model::UniformValue::Known(value), causes: Causes::default() }
+    }
+
+    pub fn live(expr: Expr, causes: Causes) -> Self {
+        Self { value: model::UniformValue::Live(expr), causes }
+    }
+}
+
+impl Causes {
+    pub fn add(&mut self, other: &Causes) {
+        self.inputs.extend(other.inputs.iter().cloned());
+        self.live.extend(other.live.iter().cloned());
+        self.params.extend(other.params.iter().cloned());
+        self.viewport |= other.viewport;
+    }
+}
+
+/// An error about a thing that was written somewhere in a part: the places that use the part are
+/// shown too.
+pub(super) fn traced(mut diagnostic: Diagnostic, trace: &[Span]) -> Box<Diagnostic> {
+    for span in trace.iter().rev() {
+        diagnostic = diagnostic.see(*span, "used here");
+    }
+    Box::new(diagnostic)
+}
+
+pub(super) fn fault(id: Code, message: impl Into<String>, at: Span, label: impl Into<String>) -> Diagnostic {
+    Diagnostic::error(id, message).at(at, label)
+}

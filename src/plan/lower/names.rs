@@ -1,0 +1,558 @@
+//! What a name stands for: in the graph language, and in WGSL where a dot is `_`.
+
+use std::collections::{BTreeMap, HashMap};
+use std::sync::Arc;
+
+use super::{LetState, Lowering, Result, Scalar, Scope, ScopeId, VarId, fault, traced};
+use crate::diagnostic::{Code, Diagnostic, Span};
+use crate::graph::expr::{Expr, ExprKind};
+use crate::graph::model::{Attribute, Graph, InputKind, Name, Node, NodeKind, Use};
+use crate::graph::value::Value;
+use crate::plan::fields;
+use crate::plan::model::{Causes, InputInfo, UniformValue};
+
+/// What a name of a graph file declares.
+#[derive(Clone, Debug)]
+pub(in crate::plan) enum Local {
+    Input(usize),
+    Param(usize),
+    Let(usize),
+    Resource(usize),
+    Sampler(usize),
+    /// The uses of this name (several only in branches), with the tests around each.
+    Use(Vec<(Use, Vec<(Expr, bool)>)>),
+}
+
+/// What a path stands for.
+#[derive(Clone, Debug)]
+pub(in crate::plan) enum Entity {
+    Scalar(Scalar),
+    Var(VarId),
+    /// An input that is no memory of its own, by its name in the root.
+    Input {
+        root: String,
+        kind: InputKind,
+    },
+    /// An optional input, or an attribute of one, that nothing feeds.
+    Absent,
+    Use(ScopeId),
+    Sampler {
+        scope: ScopeId,
+        index: usize,
+    },
+    StandardSampler(&'static str),
+}
+
+impl Entity {
+    pub fn what(&self) -> &'static str {
+        match self {
+            Entity::Scalar(_) => "a scalar",
+            Entity::Var(_) => "a texture or buffer",
+            Entity::Input { kind, .. } => match kind {
+                InputKind::Camera => "a camera",
+                InputKind::Light => "a light",
+                InputKind::Pointer => "a pointer",
+                InputKind::Particles { .. } => "particles",
+                _ => "an input",
+            },
+            Entity::Absent => "an optional input that is absent",
+            Entity::Use(_) => "a part",
+            Entity::Sampler { .. } | Entity::StandardSampler(_) => "a sampler",
+        }
+    }
+}
+
+impl Lowering<'_> {
+    pub(super) fn add_scope(
+        &mut self,
+        graph: Arc<Graph>,
+        path: String,
+        parent: Option<ScopeId>,
+        trace: Vec<Span>,
+    ) -> ScopeId {
+        let scope = Scope {
+            locals: locals(&graph),
+            path,
+            parent,
+            trace,
+            binds: BTreeMap::new(),
+            given: BTreeMap::new(),
+            counters: Vec::new(),
+            children: BTreeMap::new(),
+            resources: vec![None; graph.resources.len()],
+            lets: vec![LetState::Waiting; graph.lets.len()],
+            graph,
+        };
+        self.scopes.push(scope);
+        self.scopes.len() - 1
+    }
+
+    /// What `path` stands for in a graph instance.
+    pub fn resolve(&mut self, s: ScopeId, path: &str, span: Span) -> Result<Entity> {
+        if let Some((_, value)) = self.scopes[s].counters.iter().rev().find(|(name, _)| name == path) {
+            return Ok(Entity::Scalar(Scalar::known(Value::Int(*value))));
+        }
+        if let Some(builtin) = self.builtin(path, span) {
+            return Ok(Entity::Scalar(builtin));
+        }
+        if let Some(sampler) = fields::SAMPLERS.iter().find(|name| **name == path) {
+            return Ok(Entity::StandardSampler(sampler));
+        }
+        let (head, rest) = path.split_once('.').map_or((path, None), |(head, rest)| (head, Some(rest)));
+        let Some(local) = self.scopes[s].locals.get(head).cloned() else {
+            return Err(self.unknown(s, path, span));
+        };
+        match (local, rest) {
+            (Local::Input(i), rest) => self.input(s, i, rest, span),
+            (Local::Use(_), None) => Ok(Entity::Use(self.child(s, head, span)?)),
+            (Local::Use(_), Some(output)) => self.output(s, head, output, span),
+            (Local::Param(i), None) => Ok(Entity::Scalar(self.param(s, i)?)),
+            (Local::Let(i), None) => Ok(Entity::Scalar(self.let_value(s, i)?)),
+            (Local::Resource(i), None) => Ok(Entity::Var(self.resource(s, i)?)),
+            (Local::Sampler(i), None) => {
+                self.used.insert(self.scopes[s].graph.samplers[i].name.span);
+                Ok(Entity::Sampler { scope: s, index: i })
+            }
+            (_, Some(_)) => Err(self.unknown(s, path, span)),
+        }
+    }
+
+    /// What a WGSL variable or member of this name stands for, with its path in the graph.
+    pub fn resolve_wgsl(&mut self, s: ScopeId, name: &str, span: Span) -> Result<Option<(String, Entity)>> {
+        let mut found: Vec<String> = Vec::new();
+        if self.is_local(s, name) {
+            found.push(name.to_owned());
+        }
+        for (at, _) in name.match_indices('_') {
+            let (head, rest) = (&name[..at], &name[at + 1..]);
+            let Some(local) = self.scopes[s].locals.get(head).cloned() else { continue };
+            match local {
+                Local::Use(_) => {
+                    let child = self.child(s, head, span)?;
+                    let outputs = &self.scopes[child].graph.outputs;
+                    let matching = outputs.iter().filter(|o| o.name.value.replace('.', "_") == rest);
+                    found.extend(matching.map(|o| format!("{head}.{}", o.name.value)));
+                }
+                Local::Input(i) => {
+                    let kind = &self.scopes[s].graph.inputs[i].kind;
+                    if input_fields(kind).any(|field| field == rest) {
+                        found.push(format!("{head}.{rest}"));
+                    }
+                }
+                _ => {}
+            }
+        }
+        match found.len() {
+            0 => Ok(None),
+            1 => {
+                let path = found.remove(0);
+                let entity = self.resolve(s, &path, span)?;
+                Ok(Some((path, entity)))
+            }
+            _ => {
+                let message = format!("`{name}` could be {}", list(&found));
+                let diagnostic = fault(Code::NAME_CLASH, message, span, "this WGSL name")
+                    .hint("rename one of them, or say which with `bind`");
+                Err(traced(diagnostic, &self.scopes[s].trace))
+            }
+        }
+    }
+
+    fn is_local(&self, s: ScopeId, name: &str) -> bool {
+        let scope = &self.scopes[s];
+        scope.locals.contains_key(name)
+            || scope.counters.iter().any(|(counter, _)| counter == name)
+            || name == "viewport"
+            || fields::FRAME.iter().any(|(field, _)| *field == name)
+            || fields::SAMPLERS.contains(&name)
+    }
+
+    fn builtin(&self, path: &str, span: Span) -> Option<Scalar> {
+        if path == "viewport" {
+            let [w, h] = self.request.viewport;
+            let value = Value::Vector(vec![Value::Int(i64::from(w)), Value::Int(i64::from(h))]);
+            let causes = Causes { viewport: true, ..Causes::default() };
+            return Some(Scalar { value: UniformValue::Known(value), causes });
+        }
+        fields::FRAME.iter().find(|(name, _)| *name == path).map(|(name, _)| live(name, span))
+    }
+
+    /// The names that a graph instance can say, for "did you mean".
+    pub fn visible(&self, s: ScopeId) -> Vec<String> {
+        let scope = &self.scopes[s];
+        let mut names: Vec<String> = scope.locals.keys().cloned().collect();
+        for input in &scope.graph.inputs {
+            names.extend(input_fields(&input.kind).map(|field| format!("{}.{field}", input.name.value)));
+        }
+        for (name, child) in &scope.children {
+            let outputs = &self.scopes[*child].graph.outputs;
+            names.extend(outputs.iter().map(|output| format!("{name}.{}", output.name.value)));
+        }
+        names.extend(fields::FRAME.iter().map(|(name, _)| (*name).to_owned()));
+        names.push("viewport".to_owned());
+        names.extend(scope.counters.iter().map(|(name, _)| name.clone()));
+        names.sort();
+        names
+    }
+
+    pub(super) fn unknown(&self, s: ScopeId, path: &str, span: Span) -> Box<Diagnostic> {
+        let names = self.visible(s);
+        let diagnostic = fault(Code::UNKNOWN_NAME, format!("nothing is called `{path}`"), span, "unknown name")
+            .nearest(path, names.iter().map(String::as_str));
+        traced(diagnostic, &self.scopes[s].trace)
+    }
+
+    fn output(&mut self, s: ScopeId, name: &str, output: &str, span: Span) -> Result<Entity> {
+        let child = self.child(s, name, span)?;
+        let graph = self.scopes[child].graph.clone();
+        match graph.outputs.iter().find(|o| o.name.value == output) {
+            Some(found) => self.resolve(child, &found.of.value, found.of.span),
+            None => {
+                let names: Vec<String> = graph.outputs.iter().map(|o| o.name.value.clone()).collect();
+                let message = format!("`{name}` has no output `{output}`");
+                let diagnostic = fault(Code::UNKNOWN_NAME, message, span, "unknown output")
+                    .see(graph.span, format!("its outputs are {}", list(&names)))
+                    .nearest(output, names.iter().map(String::as_str));
+                Err(traced(diagnostic, &self.scopes[s].trace))
+            }
+        }
+    }
+
+    /// The instance of a part that is used under this name. Made when first asked for.
+    pub(super) fn child(&mut self, s: ScopeId, name: &str, span: Span) -> Result<ScopeId> {
+        if let Some(child) = self.scopes[s].children.get(name) {
+            return Ok(*child);
+        }
+        let Some(Local::Use(candidates)) = self.scopes[s].locals.get(name).cloned() else {
+            return Err(self.unknown(s, name, span));
+        };
+        for (used, tests) in &candidates {
+            let mut taken = true;
+            for (test, wanted) in tests {
+                taken &= self.boolean(s, test)?.0 == *wanted;
+            }
+            if taken {
+                return self.enter(s, used);
+            }
+        }
+        let message = format!("`{name}` is not there: the branch that uses it is not taken");
+        let mut diagnostic = fault(Code::UNKNOWN_NAME, message, span, "needs the part");
+        for (used, _) in &candidates {
+            diagnostic = diagnostic.see(used.name.span, "used only in a branch");
+        }
+        Err(traced(diagnostic, &self.scopes[s].trace))
+    }
+
+    /// Makes or revisits the instance of a `Use`, with the parameters that it gives now.
+    pub(super) fn enter(&mut self, s: ScopeId, used: &Use) -> Result<ScopeId> {
+        let parent = self.scopes[s].graph.clone();
+        let Some(graph) = self.program.part(&parent, &used.graph.value).cloned() else {
+            let message = format!("the part `{}` was not read", used.graph.value);
+            return Err(Box::new(fault(Code::FILE_MISSING, message, used.graph.span, "named here")));
+        };
+        let child = match self.scopes[s].children.get(&used.name.value) {
+            Some(child) => *child,
+            None => {
+                let path = join(&self.scopes[s].path, &used.name.value);
+                let mut trace = self.scopes[s].trace.clone();
+                trace.push(used.name.span);
+                let child = self.add_scope(graph.clone(), path, Some(s), trace);
+                self.scopes[child].binds = self.binds(&graph, used);
+                self.scopes[s].children.insert(used.name.value.clone(), child);
+                self.give(s, child, used);
+                self.check_inputs(child);
+                self.declare_params(child);
+                return Ok(child);
+            }
+        };
+        self.give(s, child, used);
+        Ok(child)
+    }
+
+    fn binds(&mut self, graph: &Graph, used: &Use) -> BTreeMap<String, Name> {
+        let mut binds = BTreeMap::new();
+        for (input, outside) in &used.bind {
+            if graph.inputs.iter().any(|i| i.name.value == input.value) {
+                binds.insert(input.value.clone(), outside.clone());
+            } else {
+                let message = format!("the part `{}` has no input `{}`", used.graph.value, input.value);
+                let names: Vec<&str> = graph.inputs.iter().map(|i| i.name.value.as_str()).collect();
+                self.diagnostics.push(
+                    fault(Code::UNKNOWN_NAME, message, input.span, "unknown input")
+                        .see(graph.span, "the part")
+                        .nearest(&input.value, names),
+                );
+            }
+        }
+        binds
+    }
+
+    /// Evaluates the parameters that a `Use` gives. In a loop they may change from one iteration
+    /// to the next, so what depends on them is forgotten.
+    fn give(&mut self, s: ScopeId, child: ScopeId, used: &Use) {
+        let graph = self.scopes[child].graph.clone();
+        let mut given = BTreeMap::new();
+        for (name, expr) in &used.params {
+            let Some(param) = graph.params.iter().find(|p| p.name.value == name.value) else {
+                let message = format!("the part `{}` has no parameter `{}`", used.graph.value, name.value);
+                let names: Vec<&str> = graph.params.iter().map(|p| p.name.value.as_str()).collect();
+                self.diagnostics.push(
+                    fault(Code::UNKNOWN_NAME, message, name.span, "unknown parameter")
+                        .see(graph.span, "the part")
+                        .nearest(&name.value, names),
+                );
+                continue;
+            };
+            let result = self.scalar(s, expr).and_then(|scalar| self.fit(scalar, param, expr.span));
+            if let Some(scalar) = self.report(result) {
+                given.insert(name.value.clone(), (scalar, expr.span));
+            }
+        }
+        let scope = &mut self.scopes[child];
+        if scope.given != given {
+            scope.given = given;
+            scope.lets = vec![LetState::Waiting; scope.graph.lets.len()];
+            // What the part's own parts were given may depend on it; they are entered anew in
+            // program order, here only what is asked for before that is forgotten.
+        }
+    }
+
+    /// What an input, or a field of it, stands for: the thing outside that feeds it.
+    fn input(&mut self, s: ScopeId, i: usize, field: Option<&str>, span: Span) -> Result<Entity> {
+        let graph = self.scopes[s].graph.clone();
+        let input = &graph.inputs[i];
+        self.used.insert(input.name.span);
+        let outer = match self.scopes[s].parent {
+            None => {
+                let attributes = attributes(&input.kind);
+                return self.root_input(s, i, attributes, field, span);
+            }
+            Some(parent) => match self.scopes[s].binds.get(&input.name.value).cloned() {
+                Some(bound) => self.resolve(parent, &bound.value, bound.span)?,
+                None if self.scopes[parent].locals.contains_key(&input.name.value) => {
+                    self.resolve(parent, &input.name.value, span)?
+                }
+                None if input.optional => Entity::Absent,
+                None => return Err(self.missing_input(s, i)),
+            },
+        };
+        match (outer, field) {
+            (entity, None) => Ok(entity),
+            (Entity::Input { root, .. }, Some(field)) => {
+                let root_graph = self.program.root.clone();
+                let index = root_graph.inputs.iter().position(|i| i.name.value == root);
+                match index {
+                    Some(index) => self.root_input(s, index, attributes(&input.kind), Some(field), span),
+                    None => Err(self.unknown(s, field, span)),
+                }
+            }
+            (Entity::Absent, Some(_)) => Err(self.absent(s, i, span)),
+            (entity, Some(field)) => {
+                let message = format!("`{}` has no field `{field}`: it is {}", input.name.value, entity.what());
+                Err(traced(fault(Code::WRONG_KIND, message, span, "no such field"), &self.scopes[s].trace))
+            }
+        }
+    }
+
+    pub(super) fn missing_input(&self, s: ScopeId, i: usize) -> Box<Diagnostic> {
+        let input = &self.scopes[s].graph.inputs[i];
+        let message = format!("nothing feeds the input `{}` ({})", input.name.value, input.kind.name());
+        let mut diagnostic = Diagnostic::error(Code::MISSING_INPUT, message);
+        diagnostic = match self.scopes[s].trace.last() {
+            Some(used) => diagnostic.at(*used, "used here").see(input.name.span, "the input"),
+            None => diagnostic.at(input.name.span, "the input"),
+        };
+        let hint = match self.scopes[s].parent {
+            Some(_) => format!("name something outside `{0}`, or say `bind: {{\"{0}\": \"...\"}}`", input.name.value),
+            None => format!("give the scene an item called `{}`", input.name.value),
+        };
+        Box::new(diagnostic.hint(hint))
+    }
+
+    pub(super) fn absent(&self, s: ScopeId, i: usize, span: Span) -> Box<Diagnostic> {
+        let input = &self.scopes[s].graph.inputs[i];
+        let name = &input.name.value;
+        let diagnostic =
+            fault(Code::OPTIONAL_INPUT, format!("the optional input `{name}` may be absent here"), span, "needs it")
+                .see(input.name.span, "declared optional")
+                .hint(format!("put what needs it inside `If(test: \"has({name})\", then: [...])`"));
+        traced(diagnostic, &self.scopes[s].trace)
+    }
+
+    /// An input of the root: what the request says of it.
+    /// `attributes` are those that the asking graph declares.
+    fn root_input(
+        &mut self,
+        s: ScopeId,
+        i: usize,
+        attributes: &[Attribute],
+        field: Option<&str>,
+        span: Span,
+    ) -> Result<Entity> {
+        let graph = self.program.root.clone();
+        let input = &graph.inputs[i];
+        self.used.insert(input.name.span);
+        let name = input.name.value.clone();
+        let info = self.request.inputs.get(&name).cloned();
+        if info.is_none() && (input.optional || !self.stand_in) {
+            return match (input.optional, field) {
+                (true, None) => Ok(Entity::Absent),
+                (true, Some(_)) => Err(self.absent(0, i, span)),
+                (false, _) => Err(self.missing_input(0, i)),
+            };
+        }
+        let table = match &input.kind {
+            InputKind::Camera => fields::CAMERA,
+            InputKind::Light => fields::LIGHT,
+            InputKind::Pointer => fields::POINTER,
+            InputKind::Particles { .. } => return self.particles(s, i, attributes, info, field, span),
+            _ => return Ok(Entity::Var(self.input_var(&name, i, info)?)),
+        };
+        match field {
+            None => Ok(Entity::Input { root: name, kind: input.kind.clone() }),
+            Some(field) if table.iter().any(|(known, _)| *known == field) => {
+                Ok(Entity::Scalar(live(&format!("{name}.{field}"), span)))
+            }
+            Some(field) => Err(self.unknown_field(s, &name, field, table, span)),
+        }
+    }
+
+    pub(super) fn unknown_field(
+        &self,
+        s: ScopeId,
+        name: &str,
+        field: &str,
+        table: &[(&str, fields::FieldType)],
+        span: Span,
+    ) -> Box<Diagnostic> {
+        let names: Vec<String> = table.iter().map(|(known, _)| (*known).to_owned()).collect();
+        let diagnostic = fault(Code::UNKNOWN_NAME, format!("`{name}` has no field `{field}`"), span, "unknown field")
+            .nearest(field, names.iter().map(String::as_str))
+            .hint(format!("its fields are {}", list(&names)));
+        traced(diagnostic, &self.scopes[s].trace)
+    }
+
+    fn particles(
+        &mut self,
+        s: ScopeId,
+        i: usize,
+        declared: &[Attribute],
+        info: Option<InputInfo>,
+        field: Option<&str>,
+        span: Span,
+    ) -> Result<Entity> {
+        let graph = self.program.root.clone();
+        let input = &graph.inputs[i];
+        let name = input.name.value.clone();
+        let Some(InputInfo::Particles { count, radius, min, max, attributes }) = info else {
+            return Err(self.missing_input(0, i));
+        };
+        let Some(field) = field else { return Ok(Entity::Input { root: name, kind: input.kind.clone() }) };
+        let value = match field {
+            "count" => Value::Int(i64::try_from(count).unwrap_or(i64::MAX)),
+            "radius" => Value::Float(radius),
+            "min" => Value::vec(min),
+            "max" => Value::vec(max),
+            attribute => {
+                let Some(declaration) = declared.iter().find(|a| a.name.value == attribute) else {
+                    return Err(self.unknown_field(s, &name, field, fields::PARTICLES, span));
+                };
+                let present = attributes.iter().find(|(known, _)| known == attribute);
+                if present.is_none() && !declaration.optional {
+                    let names: Vec<String> = attributes.iter().map(|(known, _)| known.clone()).collect();
+                    let message = format!("the particles have no attribute `{attribute}`");
+                    let diagnostic = fault(Code::MISSING_INPUT, message, declaration.name.span, "asked for here")
+                        .hint(format!("they have {}; `\"{attribute}?\"` makes it optional", list(&names)));
+                    return Err(Box::new(diagnostic));
+                }
+                return Ok(Entity::Var(self.attribute_var(&name, attribute, count, present.is_some(), input.span)));
+            }
+        };
+        let causes = Causes { inputs: [name].into(), ..Causes::default() };
+        Ok(Entity::Scalar(Scalar { value: UniformValue::Known(value), causes }))
+    }
+}
+
+/// Something that is known only while a frame runs.
+pub(super) fn live(name: &str, span: Span) -> Scalar {
+    let causes = Causes { live: [name.to_owned()].into(), ..Causes::default() };
+    Scalar::live(Expr { kind: ExprKind::Name(name.to_owned()), span }, causes)
+}
+
+/// The fields of an input of a kind: what follows its name and a dot.
+pub(super) fn input_fields(kind: &InputKind) -> impl Iterator<Item = &str> {
+    let (table, attributes): (&[(&str, fields::FieldType)], &[Attribute]) = match kind {
+        InputKind::Camera => (fields::CAMERA, &[]),
+        InputKind::Light => (fields::LIGHT, &[]),
+        InputKind::Pointer => (fields::POINTER, &[]),
+        InputKind::Particles { attributes } => (fields::PARTICLES, attributes),
+        _ => (&[], &[]),
+    };
+    table.iter().map(|(name, _)| *name).chain(attributes.iter().map(|a| a.name.value.as_str()))
+}
+
+fn attributes(kind: &InputKind) -> &[Attribute] {
+    match kind {
+        InputKind::Particles { attributes } => attributes,
+        _ => &[],
+    }
+}
+
+pub(super) fn join(path: &str, name: &str) -> String {
+    if path.is_empty() { name.to_owned() } else { format!("{path}.{name}") }
+}
+
+/// `a`, `b` and `c`, in backquotes.
+pub(in crate::plan) fn list(names: &[String]) -> String {
+    let quoted: Vec<String> = names.iter().map(|n| format!("`{n}`")).collect();
+    match quoted.as_slice() {
+        [] => "none".to_owned(),
+        [one] => one.clone(),
+        [most @ .., last] => format!("{} and {last}", most.join(", ")),
+    }
+}
+
+fn locals(graph: &Graph) -> HashMap<String, Local> {
+    let mut locals = HashMap::new();
+    for (i, input) in graph.inputs.iter().enumerate() {
+        locals.insert(input.name.value.clone(), Local::Input(i));
+    }
+    for (i, param) in graph.params.iter().enumerate() {
+        locals.insert(param.name.value.clone(), Local::Param(i));
+    }
+    for (i, derived) in graph.lets.iter().enumerate() {
+        locals.insert(derived.name.value.clone(), Local::Let(i));
+    }
+    for (i, resource) in graph.resources.iter().enumerate() {
+        locals.insert(resource.name.value.clone(), Local::Resource(i));
+    }
+    for (i, sampler) in graph.samplers.iter().enumerate() {
+        locals.insert(sampler.name.value.clone(), Local::Sampler(i));
+    }
+    uses(&graph.passes, &mut Vec::new(), &mut |used, tests| {
+        if let Local::Use(candidates) = locals.entry(used.name.value.clone()).or_insert_with(|| Local::Use(Vec::new()))
+        {
+            candidates.push((used.clone(), tests.to_vec()));
+        }
+    });
+    locals
+}
+
+/// Visits every `Use` with the tests that must hold for it to be taken.
+fn uses(nodes: &[Node], tests: &mut Vec<(Expr, bool)>, visit: &mut dyn FnMut(&Use, &[(Expr, bool)])) {
+    for node in nodes {
+        match &node.kind {
+            NodeKind::Use(used) => visit(used, tests),
+            NodeKind::Repeat(repeat) => uses(&repeat.passes, tests, visit),
+            NodeKind::Steps(steps) => uses(&steps.passes, tests, visit),
+            NodeKind::If(choice) => {
+                for (branch, wanted) in [(&choice.then, true), (&choice.otherwise, false)] {
+                    tests.push((choice.test.clone(), wanted));
+                    uses(branch, tests, visit);
+                    tests.pop();
+                }
+            }
+            _ => {}
+        }
+    }
+}

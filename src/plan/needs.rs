@@ -1,0 +1,164 @@
+//! What a plan needs of a device, against WebGPU's defaults and against the device at hand.
+
+use std::collections::BTreeMap;
+
+use wgpu_types::{Features, Limits, ShaderStages};
+
+use super::lower::{Lowering, fault, traced};
+use super::model::{Bound, Needs, Object, ObjectKind, Pass, PassKind, ShaderUse};
+use crate::diagnostic::{Code, Diagnostic, Diagnostics, Span};
+use crate::shader::reflect::Stage;
+
+/// The largest amount of each thing, and the place that asks for it.
+#[derive(Default)]
+struct Wanted(BTreeMap<&'static str, (u64, Span, Vec<Span>)>);
+
+impl Wanted {
+    fn at_least(&mut self, name: &'static str, amount: u64, span: Span, trace: &[Span]) {
+        let entry = self.0.entry(name).or_insert((0, span, Vec::new()));
+        if amount > entry.0 {
+            *entry = (amount, span, trace.to_vec());
+        }
+    }
+}
+
+/// Collects needs; what the device at hand lacks is an error.
+pub(super) fn needs(lowering: &Lowering<'_>, objects: &[Object]) -> (Needs, Diagnostics) {
+    let mut wanted = Wanted::default();
+    for object in objects.iter().filter(|o| o.lifetime.is_some()) {
+        of_object(&mut wanted, object);
+    }
+    for flat in &lowering.flat {
+        of_pass(&mut wanted, lowering, &flat.pass, flat.word, &flat.trace, objects);
+    }
+    let mut found = Diagnostics::new();
+    let mut limits = Vec::new();
+    let (defaults, device) = (Limits::default(), &lowering.request.limits);
+    for (name, (amount, span, trace)) in &wanted.0 {
+        if *amount > limit(&defaults, name) {
+            limits.push(((*name).to_owned(), *amount, limit(&defaults, name)));
+        }
+        let has = limit(device, name);
+        if *amount > has {
+            let message = format!("the device has {has} of `{name}`, and {amount} are needed");
+            let diagnostic = fault(Code::DEVICE_LIMIT, message, *span, format!("needs {amount}"));
+            found.push(*traced(diagnostic, trace));
+        }
+    }
+    let lacking = lowering.features - lowering.request.features;
+    for (name, _) in lacking.iter_names() {
+        let message =
+            format!("the graph needs the device feature `{}`, which the device lacks", name.to_ascii_lowercase());
+        found.push(Diagnostic::error(Code::DEVICE_LIMIT, message).at(lowering.program.root.span, "this graph"));
+    }
+    (Needs { features: lowering.features, limits }, found)
+}
+
+/// Features beyond WebGPU's defaults, by their names.
+pub fn feature_names(features: Features) -> Vec<String> {
+    features.iter_names().map(|(name, _)| name.to_ascii_lowercase()).collect()
+}
+
+fn of_object(wanted: &mut Wanted, object: &Object) {
+    let at = object.span;
+    match &object.kind {
+        ObjectKind::Texture(t) if t.is_3d => {
+            let edge = t.width.max(t.height).max(t.layers);
+            wanted.at_least("max_texture_dimension_3d", u64::from(edge), at, &[]);
+        }
+        ObjectKind::Texture(t) => {
+            wanted.at_least("max_texture_dimension_2d", u64::from(t.width.max(t.height)), at, &[]);
+            wanted.at_least("max_texture_array_layers", u64::from(t.layers), at, &[]);
+        }
+        ObjectKind::Buffer(b) => wanted.at_least("max_buffer_size", b.bytes(), at, &[]),
+    }
+}
+
+fn of_pass(wanted: &mut Wanted, lowering: &Lowering<'_>, pass: &Pass, word: Span, trace: &[Span], objects: &[Object]) {
+    let shader = match &pass.kind {
+        PassKind::Compute { shader, .. } => shader,
+        PassKind::Draw(draw) => {
+            wanted.at_least("max_color_attachments", draw.color.len() as u64, word, trace);
+            let bytes: u32 = draw.color.iter().filter_map(|t| t.format.target_pixel_byte_cost()).sum();
+            wanted.at_least("max_color_attachment_bytes_per_sample", u64::from(bytes), word, trace);
+            &draw.shader
+        }
+        _ => return,
+    };
+    of_bindings(wanted, lowering, shader, word, trace, objects);
+    let module = &lowering.modules[shader.module];
+    for name in shader.compute.iter() {
+        let Some(entry) = module.stage(Stage::Compute).find(|e| e.name == *name) else { continue };
+        let Ok(size) = module.workgroup_size(entry, &shader.constants) else { continue };
+        let threads = size.iter().map(|n| u64::from(*n)).product();
+        wanted.at_least("max_compute_invocations_per_workgroup", threads, entry.span, trace);
+        wanted.at_least("max_compute_workgroup_size_x", u64::from(size[0]), entry.span, trace);
+        wanted.at_least("max_compute_workgroup_size_y", u64::from(size[1]), entry.span, trace);
+        wanted.at_least("max_compute_workgroup_size_z", u64::from(size[2]), entry.span, trace);
+        wanted.at_least("max_compute_workgroup_storage_size", u64::from(entry.workgroup_memory), entry.span, trace);
+    }
+}
+
+fn of_bindings(
+    wanted: &mut Wanted,
+    lowering: &Lowering<'_>,
+    shader: &ShaderUse,
+    word: Span,
+    trace: &[Span],
+    objects: &[Object],
+) {
+    for stage in [ShaderStages::COMPUTE, ShaderStages::VERTEX, ShaderStages::FRAGMENT] {
+        let mut counts: BTreeMap<&'static str, u64> = BTreeMap::new();
+        for binding in shader.bindings.iter().filter(|b| b.stages.contains(stage)) {
+            let (name, size) = match &binding.bound {
+                Bound::Uniform { block } => (
+                    "max_uniform_buffers_per_shader_stage",
+                    Some(("max_uniform_buffer_binding_size", u64::from(lowering.uniforms[*block].size))),
+                ),
+                Bound::UniformBuffer { buffer } => {
+                    let size = super::memory::bytes(&objects[lowering.object_id(*buffer)].kind);
+                    ("max_uniform_buffers_per_shader_stage", Some(("max_uniform_buffer_binding_size", size)))
+                }
+                Bound::Storage { buffer, .. } => {
+                    let size = super::memory::bytes(&objects[lowering.object_id(*buffer)].kind);
+                    ("max_storage_buffers_per_shader_stage", Some(("max_storage_buffer_binding_size", size)))
+                }
+                Bound::Texture { .. } => ("max_sampled_textures_per_shader_stage", None),
+                Bound::StorageTexture { .. } => ("max_storage_textures_per_shader_stage", None),
+                Bound::Sampler { .. } => ("max_samplers_per_shader_stage", None),
+            };
+            *counts.entry(name).or_default() += 1;
+            if let Some((limit, size)) = size {
+                wanted.at_least(limit, size, word, trace);
+            }
+        }
+        for (name, count) in counts {
+            wanted.at_least(name, count, word, trace);
+        }
+    }
+}
+
+/// A limit by its name in WebGPU.
+pub fn limit(limits: &Limits, name: &str) -> u64 {
+    match name {
+        "max_texture_dimension_2d" => u64::from(limits.max_texture_dimension_2d),
+        "max_texture_dimension_3d" => u64::from(limits.max_texture_dimension_3d),
+        "max_texture_array_layers" => u64::from(limits.max_texture_array_layers),
+        "max_buffer_size" => limits.max_buffer_size,
+        "max_color_attachments" => u64::from(limits.max_color_attachments),
+        "max_color_attachment_bytes_per_sample" => u64::from(limits.max_color_attachment_bytes_per_sample),
+        "max_compute_invocations_per_workgroup" => u64::from(limits.max_compute_invocations_per_workgroup),
+        "max_compute_workgroup_size_x" => u64::from(limits.max_compute_workgroup_size_x),
+        "max_compute_workgroup_size_y" => u64::from(limits.max_compute_workgroup_size_y),
+        "max_compute_workgroup_size_z" => u64::from(limits.max_compute_workgroup_size_z),
+        "max_compute_workgroup_storage_size" => u64::from(limits.max_compute_workgroup_storage_size),
+        "max_uniform_buffers_per_shader_stage" => u64::from(limits.max_uniform_buffers_per_shader_stage),
+        "max_uniform_buffer_binding_size" => limits.max_uniform_buffer_binding_size.into(),
+        "max_storage_buffers_per_shader_stage" => u64::from(limits.max_storage_buffers_per_shader_stage),
+        "max_storage_buffer_binding_size" => limits.max_storage_buffer_binding_size.into(),
+        "max_sampled_textures_per_shader_stage" => u64::from(limits.max_sampled_textures_per_shader_stage),
+        "max_storage_textures_per_shader_stage" => u64::from(limits.max_storage_textures_per_shader_stage),
+        "max_samplers_per_shader_stage" => u64::from(limits.max_samplers_per_shader_stage),
+        _ => u64::MAX,
+    }
+}
