@@ -10,6 +10,10 @@ struct Params {
     middle: vec2f,
     tile_m: f32,
     floor_color: vec3f,
+    shadow: f32,
+    absorption: vec3f,
+    shadow_m: f32,
+    particles_radius: f32,
     box: u32,
     box_min: vec3f,
     box_max: vec3f,
@@ -28,6 +32,8 @@ const FLOOR_VERTICES = 6u;
 var<uniform> params: Params;
 var<uniform> sun: Light;
 var<storage, read> ambient: array<vec4f>;
+var thickness: texture_2d<f32>;
+var linear_clamp: sampler;
 
 /// A corner of a square from -1 to 1: two triangles, six vertices.
 fn corner(index: u32) -> vec2f {
@@ -83,6 +89,16 @@ fn sky_irradiance(normal: vec3f) -> vec3f {
     return max(sum, vec3f(0.0));
 }
 
+/// Share of the sun's light that comes through the water above a point of the floor.
+fn sunlight(at: vec2f) -> vec3f {
+    let uv = (at - params.middle) / params.shadow_m * 0.5 + 0.5;
+    let depth_m = textureSampleLevel(thickness, linear_clamp, uv, 0.0).x;
+    let covered = 1.0 - exp(-depth_m / (2.0 * params.particles_radius));
+    // Outside the picture lies no shadow.
+    let inside = select(0.0, 1.0, all(uv > vec2f(0.0)) && all(uv < vec2f(1.0)));
+    return mix(vec3f(1.0), (1.0 - params.shadow * covered) * exp(-params.absorption * depth_m), inside);
+}
+
 @fragment
 fn shade(in: Vertex) -> @location(0) vec4f {
     let square = checker(in.world.xz / params.tile_m);
@@ -93,6 +109,10 @@ fn shade(in: Vertex) -> @location(0) vec4f {
         let away = length(in.world.xz - params.middle) / params.floor_radius_m;
         alpha = 1.0 - smoothstep(0.35, 1.0, away);
     }
-    let light = sky_irradiance(in.normal) + irradiance(sun) * max(dot(in.normal, -sun.direction), 0.0);
+    var direct = irradiance(sun) * max(dot(in.normal, -sun.direction), 0.0);
+    if in.is_box == 0u {
+        direct *= sunlight(in.world.xz);
+    }
+    let light = sky_irradiance(in.normal) + direct;
     return vec4f(albedo * light / 3.14159265 * alpha, alpha);
 }
