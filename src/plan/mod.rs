@@ -212,7 +212,15 @@ fn unused(lowering: &Lowering<'_>, outputs: &[Output]) -> Diagnostics {
             }
         }
     }
-    let given: BTreeSet<ObjectRef> = outputs.iter().map(|o| o.object).collect();
+    let mut given: BTreeSet<ObjectRef> = outputs.iter().map(|o| o.object).collect();
+    // What a part puts out is there for whoever wants it.
+    for scope in &lowering.scopes {
+        for output in &scope.graph.outputs {
+            let resource = scope.graph.resources.iter().position(|r| r.name.value == output.of.value);
+            let var = resource.and_then(|i| scope.resources[i]).filter(|var| *var < lowering.vars.len());
+            given.extend(var.map(|var| lowering.vars[var].now));
+        }
+    }
     for (id, building) in lowering.objects.iter().enumerate() {
         let object = ObjectRef::Fixed(id);
         let of_frame = building.object.origin == model::Origin::Frame;
