@@ -7,6 +7,7 @@
 
 pub mod check;
 pub mod diagnostic;
+pub mod engine;
 pub mod files;
 pub mod format;
 pub mod graph;

@@ -1,0 +1,92 @@
+//! Commands for each kind of pass.
+
+mod arguments;
+mod clear;
+mod compute;
+mod copy;
+mod draw;
+mod mips;
+mod settle;
+
+use super::bind::{Fixed, Variant, resolve};
+use super::clear::ClearVariant;
+use super::pipeline::{Pipeline, PipelineKind};
+use super::pool::Pool;
+use super::timing::Timing;
+use crate::plan::model::{ObjectId, ObjectRef, Pass, PassKind, Plan};
+
+/// A frame on its way into commands.
+pub(super) struct Encoding<'a> {
+    pub encoder: &'a mut wgpu::CommandEncoder,
+    pub plan: &'a Plan,
+    pub pool: &'a Pool,
+    pub fixed: &'a Fixed,
+    pub rotation: &'a [usize],
+    pub timing: &'a Timing,
+    /// The pair of queries that times the pass.
+    pub pair: Option<u32>,
+    /// On a processor, keeping what is there costs less than clearing it.
+    pub loads_are_free: bool,
+}
+
+impl Encoding<'_> {
+    /// Encodes one pass.
+    pub fn pass(&mut self, pass: &Pass, pipeline: Option<&Pipeline>, variant: &Variant) {
+        match (&pass.kind, variant) {
+            (PassKind::Compute { dispatch, .. }, Variant::Compute(group)) => {
+                compute::encode(self, pass, dispatch, pipeline, group.as_ref());
+            }
+            (PassKind::Draw(draw), Variant::Draw(variant)) => draw::encode(self, pass, draw, pipeline, variant),
+            (PassKind::Clear { view, .. }, Variant::Clear(variant)) => {
+                clear::encode(self, pass, view, pipeline, variant);
+            }
+            (PassKind::Mips { .. }, Variant::Mips(steps)) => mips::encode(self, pass, pipeline, steps),
+            (PassKind::Settle { .. }, Variant::Settle(group)) => settle::encode(self, pass, pipeline, group),
+            (PassKind::Copy { from, to }, _) => copy::encode(self, pass, from, to),
+            (PassKind::Arguments { from, offset, indexed, slot }, _) => {
+                arguments::encode(self, pass, *from, *offset, *indexed, *slot);
+            }
+            // Variants are made from the same kinds.
+            _ => debug_assert!(false, "a variant of another kind"),
+        }
+    }
+
+    pub fn object(&self, object: ObjectRef) -> ObjectId {
+        resolve(self.plan, self.rotation, object)
+    }
+
+    /// Encodes what is no pass, in a debug group of the pass's name.
+    fn between(&mut self, pass: &Pass, commands: impl FnOnce(&mut wgpu::CommandEncoder)) {
+        self.encoder.push_debug_group(&pass.path);
+        self.timing.write(self.encoder, self.pair, 0);
+        commands(self.encoder);
+        self.timing.write(self.encoder, self.pair, 1);
+        self.encoder.pop_debug_group();
+    }
+}
+
+/// Whether the commands of a pass can carry times: they need a pass of wgpu, or a device that
+/// tells time between them.
+pub(super) fn can_be_timed(variant: &Variant, between: bool) -> bool {
+    match variant {
+        Variant::Nothing | Variant::Clear(ClearVariant::Texels { .. } | ClearVariant::Zero { .. }) => between,
+        Variant::Clear(ClearVariant::Color { views, .. } | ClearVariant::Depth { views, .. }) => !views.is_empty(),
+        Variant::Mips(steps) => !steps.is_empty(),
+        Variant::Compute(_) | Variant::Draw(_) | Variant::Settle(_) => true,
+        Variant::Clear(ClearVariant::Words { .. }) => true,
+    }
+}
+
+fn compute_pipeline(pipeline: Option<&Pipeline>) -> Option<&wgpu::ComputePipeline> {
+    match &pipeline?.kind {
+        PipelineKind::Compute(pipeline) => Some(pipeline),
+        PipelineKind::Draw(_) => None,
+    }
+}
+
+fn render_pipeline(pipeline: Option<&Pipeline>) -> Option<&wgpu::RenderPipeline> {
+    match &pipeline?.kind {
+        PipelineKind::Draw(pipeline) => Some(pipeline),
+        PipelineKind::Compute(_) => None,
+    }
+}

@@ -1,0 +1,146 @@
+//! Values as bytes of WGSL types, for uniforms and tables. No GPU here.
+
+use crate::graph::value::Value;
+use crate::shader::reflect::{Scalar, Type};
+
+/// Writes a value as a type has it in memory, at the start of `out`.
+///
+/// Numbers convert to the scalar asked for if nothing is lost (a whole Int to `f32`, a Bool to
+/// 0 or 1), 3 components fill a vector of 4 with 1 (a colour's alpha), and a matrix takes its
+/// components column by column.
+///
+/// # Errors
+/// A message that says what was expected and what was found.
+pub fn encode(value: &Value, ty: &Type, out: &mut [u8]) -> Result<(), String> {
+    if out.len() < ty.size() as usize {
+        return Err(format!("{} needs {} bytes, there are {}", ty.wgsl(), ty.size(), out.len()));
+    }
+    let mismatch = || format!("expected a value for {}, found {} {value}", ty.wgsl(), value.kind());
+    match ty {
+        Type::Scalar(scalar) | Type::Atomic(scalar) => scalar_bytes(value, *scalar, out).ok_or_else(mismatch),
+        Type::Vector { components, scalar } => {
+            vector(value.components(), *components, *scalar, out).ok_or_else(mismatch)
+        }
+        Type::Matrix { columns, rows, scalar } => {
+            matrix(value.components(), *columns, *rows, *scalar, out).ok_or_else(mismatch)
+        }
+        Type::Array { element, count: Some(count), stride } => {
+            let parts = value.components();
+            let width = parts.len() / (*count).max(1) as usize;
+            if width == 0 || width * *count as usize != parts.len() {
+                return Err(mismatch());
+            }
+            for (part, place) in parts.chunks(width).zip(out.chunks_mut((*stride).max(1) as usize)) {
+                let part = if width == 1 { part[0].clone() } else { Value::Vector(part.to_vec()) };
+                encode(&part, element, place)?;
+            }
+            Ok(())
+        }
+        Type::Array { count: None, .. } | Type::Struct { .. } => Err(mismatch()),
+    }
+}
+
+fn vector(parts: &[Value], components: u32, scalar: Scalar, out: &mut [u8]) -> Option<()> {
+    let one = Value::Int(1);
+    let full: Vec<&Value> = match (parts.len(), components) {
+        (3, 4) => parts.iter().chain([&one]).collect(),
+        (n, c) if n == c as usize => parts.iter().collect(),
+        _ => return None,
+    };
+    let step = scalar.size() as usize;
+    full.into_iter().zip(out.chunks_mut(step)).try_for_each(|(part, place)| scalar_bytes(part, scalar, place))
+}
+
+fn matrix(parts: &[Value], columns: u32, rows: u32, scalar: Scalar, out: &mut [u8]) -> Option<()> {
+    if parts.len() != (columns * rows) as usize {
+        return None;
+    }
+    let stride = scalar.size() as usize * if rows == 2 { 2 } else { 4 };
+    parts
+        .chunks(rows as usize)
+        .zip(out.chunks_mut(stride))
+        .try_for_each(|(column, place)| vector(column, rows, scalar, place))
+}
+
+fn scalar_bytes(value: &Value, scalar: Scalar, out: &mut [u8]) -> Option<()> {
+    let bytes: [u8; 4] = match scalar {
+        Scalar::F32 => (number(value)? as f32).to_le_bytes(),
+        Scalar::I32 => i32::try_from(whole(value)?).ok()?.to_le_bytes(),
+        Scalar::U32 => u32::try_from(whole(value)?).ok()?.to_le_bytes(),
+        Scalar::F16 => {
+            let half = half::f16::from_f64(number(value)?).to_le_bytes();
+            out.get_mut(..2)?.copy_from_slice(&half);
+            return Some(());
+        }
+        Scalar::Other => return None,
+    };
+    out.get_mut(..4)?.copy_from_slice(&bytes);
+    Some(())
+}
+
+fn number(value: &Value) -> Option<f64> {
+    value.as_f64().or_else(|| value.as_bool().map(|b| f64::from(u8::from(b))))
+}
+
+fn whole(value: &Value) -> Option<i64> {
+    match value {
+        Value::Int(i) => Some(*i),
+        Value::Bool(b) => Some(i64::from(*b)),
+        // Counts and indices that came through a division, when nothing is lost.
+        Value::Float(f) if f.fract() == 0.0 && f.abs() < 9e15 => Some(*f as i64),
+        _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+    use super::*;
+
+    fn floats(bytes: &[u8]) -> Vec<f32> {
+        bytes.chunks(4).map(|c| f32::from_le_bytes(c.try_into().unwrap())).collect()
+    }
+
+    fn encoded(value: &Value, ty: &Type) -> Vec<u8> {
+        let mut out = vec![0xaa; ty.size() as usize];
+        encode(value, ty, &mut out).unwrap();
+        out
+    }
+
+    #[test]
+    fn scalars_convert_when_nothing_is_lost() {
+        assert_eq!(floats(&encoded(&Value::Int(3), &Type::Scalar(Scalar::F32))), [3.0]);
+        assert_eq!(encoded(&Value::Bool(true), &Type::Scalar(Scalar::U32)), 1u32.to_le_bytes());
+        assert_eq!(encoded(&Value::Int(-2), &Type::Scalar(Scalar::I32)), (-2i32).to_le_bytes());
+        assert_eq!(encoded(&Value::Float(0.5), &Type::Scalar(Scalar::F16)), [0x00, 0x38]);
+        let mut out = [0; 4];
+        assert!(encode(&Value::Int(-1), &Type::Scalar(Scalar::U32), &mut out).is_err());
+        assert!(encode(&Value::Float(0.5), &Type::Scalar(Scalar::I32), &mut out).is_err());
+        assert!(encode(&Value::Word("x".into()), &Type::Scalar(Scalar::F32), &mut out).is_err());
+    }
+
+    #[test]
+    fn a_color_of_three_gets_alpha_one() {
+        let four = Type::Vector { components: 4, scalar: Scalar::F32 };
+        assert_eq!(floats(&encoded(&Value::vec([0.1, 0.2, 0.3]), &four)), [0.1, 0.2, 0.3, 1.0]);
+        let two = Type::Vector { components: 2, scalar: Scalar::F32 };
+        assert!(encode(&Value::vec([0.1, 0.2, 0.3]), &two, &mut [0; 8]).is_err());
+    }
+
+    #[test]
+    fn matrices_are_padded_by_columns() {
+        let ty = Type::Matrix { columns: 3, rows: 3, scalar: Scalar::F32 };
+        let mut out = vec![0; ty.size() as usize];
+        encode(&Value::vec((0..9).map(f64::from)), &ty, &mut out).unwrap();
+        assert_eq!(floats(&out), [0.0, 1.0, 2.0, 0.0, 3.0, 4.0, 5.0, 0.0, 6.0, 7.0, 8.0, 0.0]);
+    }
+
+    #[test]
+    fn arrays_are_spread_by_their_stride() {
+        let element = Box::new(Type::Vector { components: 2, scalar: Scalar::F32 });
+        let ty = Type::Array { element, count: Some(2), stride: 16 };
+        let mut out = vec![0; ty.size() as usize];
+        encode(&Value::vec([1.0, 2.0, 3.0, 4.0]), &ty, &mut out).unwrap();
+        assert_eq!(floats(&out), [1.0, 2.0, 0.0, 0.0, 3.0, 4.0, 0.0, 0.0]);
+    }
+}

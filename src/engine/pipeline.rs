@@ -1,0 +1,272 @@
+//! Shader modules and pipelines, each made once for all that defines it. What a reload leaves
+//! as it was is found again here and not compiled anew.
+
+use std::borrow::Cow;
+use std::collections::HashMap;
+use std::sync::Arc;
+
+use wgpu_types as wgt;
+
+use super::gpu::Gpu;
+use crate::shader::reflect::Module;
+
+/// WGSL that the engine brings, or a module of the plan.
+#[derive(Clone, Debug)]
+pub(super) enum Source {
+    Module(Arc<Module>),
+    Text(Cow<'static, str>),
+}
+
+impl Source {
+    fn hash(&self) -> u128 {
+        match self {
+            Source::Module(module) => module.hash,
+            Source::Text(text) => twox_hash::XxHash3_128::oneshot(text.as_bytes()),
+        }
+    }
+}
+
+/// An entry point with its constants.
+#[derive(Clone, Debug)]
+pub(super) struct Stage {
+    pub source: Source,
+    pub entry: String,
+    pub constants: Vec<(String, f64)>,
+}
+
+impl Stage {
+    pub fn text(text: impl Into<Cow<'static, str>>, entry: &str) -> Self {
+        Self { source: Source::Text(text.into()), entry: entry.into(), constants: Vec::new() }
+    }
+
+    fn key(&self) -> StageKey {
+        StageKey {
+            module: self.source.hash(),
+            entry: self.entry.clone(),
+            constants: self.constants.iter().map(|(k, v)| (k.clone(), v.to_bits())).collect(),
+        }
+    }
+
+    fn constants(&self) -> Vec<(&str, f64)> {
+        self.constants.iter().map(|(k, v)| (k.as_str(), *v)).collect()
+    }
+}
+
+/// All that defines a pipeline.
+#[derive(Clone, Debug)]
+pub(super) struct Recipe {
+    pub layout: Vec<wgt::BindGroupLayoutEntry>,
+    pub kind: RecipeKind,
+}
+
+#[derive(Clone, Debug)]
+pub(super) enum RecipeKind {
+    Compute(Stage),
+    Draw {
+        vertex: Stage,
+        fragment: Option<Stage>,
+        targets: Vec<Option<wgt::ColorTargetState>>,
+        primitive: wgt::PrimitiveState,
+        depth: Option<wgt::DepthStencilState>,
+        samples: u32,
+    },
+}
+
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+struct StageKey {
+    module: u128,
+    entry: String,
+    constants: Vec<(String, u64)>,
+}
+
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+struct Key {
+    layout: Vec<wgt::BindGroupLayoutEntry>,
+    stages: Vec<StageKey>,
+    draw: Option<DrawKey>,
+}
+
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+struct DrawKey {
+    targets: Vec<Option<wgt::ColorTargetState>>,
+    primitive: wgt::PrimitiveState,
+    depth: Option<wgt::DepthStencilState>,
+    samples: u32,
+}
+
+impl Recipe {
+    fn key(&self) -> Key {
+        let layout = self.layout.clone();
+        match &self.kind {
+            RecipeKind::Compute(stage) => Key { layout, stages: vec![stage.key()], draw: None },
+            RecipeKind::Draw { vertex, fragment, targets, primitive, depth, samples } => Key {
+                layout,
+                stages: std::iter::once(vertex).chain(fragment).map(Stage::key).collect(),
+                draw: Some(DrawKey {
+                    targets: targets.clone(),
+                    primitive: *primitive,
+                    depth: depth.clone(),
+                    samples: *samples,
+                }),
+            },
+        }
+    }
+}
+
+/// A pipeline and the layout of its bind group 0, if it binds anything.
+#[derive(Debug)]
+pub(super) struct Pipeline {
+    pub kind: PipelineKind,
+    pub layout: Option<wgpu::BindGroupLayout>,
+}
+
+#[derive(Debug)]
+pub(super) enum PipelineKind {
+    Compute(wgpu::ComputePipeline),
+    Draw(wgpu::RenderPipeline),
+}
+
+#[derive(Debug)]
+struct Kept<T> {
+    value: T,
+    /// The round in which it was last asked for.
+    used: u64,
+}
+
+/// Modules, layouts and pipelines by content.
+#[derive(Debug, Default)]
+pub(super) struct PipelineCache {
+    modules: HashMap<u128, Kept<wgpu::ShaderModule>>,
+    layouts: HashMap<Vec<wgt::BindGroupLayoutEntry>, wgpu::BindGroupLayout>,
+    pipelines: HashMap<Key, Kept<Arc<Pipeline>>>,
+    round: u64,
+    pub built: usize,
+    pub reused: usize,
+}
+
+/// How many preparations a pipeline outlives its last use: going back to an earlier text while
+/// editing is then free.
+const KEPT_ROUNDS: u64 = 64;
+
+impl PipelineCache {
+    /// Begins to count anew, and lets go of what has long been out of use.
+    pub fn begin_round(&mut self) {
+        self.round += 1;
+        self.built = 0;
+        self.reused = 0;
+        let oldest = self.round.saturating_sub(KEPT_ROUNDS);
+        self.modules.retain(|_, kept| kept.used >= oldest);
+        self.pipelines.retain(|_, kept| kept.used >= oldest);
+    }
+
+    /// The pipeline of a recipe, from the cache or made now. To be called inside error scopes;
+    /// what is made inside a scope that catches an error must be forgotten with [`Self::forget`].
+    pub fn get(&mut self, gpu: &Gpu, recipe: &Recipe, label: &str) -> Arc<Pipeline> {
+        let key = recipe.key();
+        if let Some(kept) = self.pipelines.get_mut(&key) {
+            kept.used = self.round;
+            self.reused += 1;
+            return Arc::clone(&kept.value);
+        }
+        let pipeline = Arc::new(self.build(gpu, recipe, label));
+        self.built += 1;
+        self.pipelines.insert(key, Kept { value: Arc::clone(&pipeline), used: self.round });
+        pipeline
+    }
+
+    /// Forgets what a recipe made: it is invalid.
+    pub fn forget(&mut self, recipe: &Recipe) {
+        self.pipelines.remove(&recipe.key());
+        self.layouts.remove(&recipe.layout);
+        let stages: Vec<&Stage> = match &recipe.kind {
+            RecipeKind::Compute(stage) => vec![stage],
+            RecipeKind::Draw { vertex, fragment, .. } => std::iter::once(vertex).chain(fragment).collect(),
+        };
+        for stage in stages {
+            self.modules.remove(&stage.source.hash());
+        }
+    }
+
+    fn build(&mut self, gpu: &Gpu, recipe: &Recipe, label: &str) -> Pipeline {
+        let layout = (!recipe.layout.is_empty()).then(|| self.bind_group_layout(gpu, &recipe.layout));
+        let groups: Vec<_> = layout.iter().map(Some).collect();
+        let pipeline_layout = gpu.device().create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: Some(label),
+            bind_group_layouts: &groups,
+            immediate_size: 0,
+        });
+        let kind = match &recipe.kind {
+            RecipeKind::Compute(stage) => {
+                let module = self.module(gpu, &stage.source);
+                PipelineKind::Compute(gpu.device().create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+                    label: Some(label),
+                    layout: Some(&pipeline_layout),
+                    module: &module,
+                    entry_point: Some(&stage.entry),
+                    compilation_options: options(&stage.constants()),
+                    cache: None,
+                }))
+            }
+            RecipeKind::Draw { .. } => PipelineKind::Draw(self.draw(gpu, recipe, &pipeline_layout, label)),
+        };
+        Pipeline { kind, layout }
+    }
+
+    fn draw(&mut self, gpu: &Gpu, recipe: &Recipe, layout: &wgpu::PipelineLayout, label: &str) -> wgpu::RenderPipeline {
+        let RecipeKind::Draw { vertex, fragment, targets, primitive, depth, samples } = &recipe.kind else {
+            unreachable!("only called for draws")
+        };
+        let vertex_module = self.module(gpu, &vertex.source);
+        let fragment_module = fragment.as_ref().map(|f| (self.module(gpu, &f.source), f, f.constants()));
+        gpu.device().create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+            label: Some(label),
+            layout: Some(layout),
+            vertex: wgpu::VertexState {
+                module: &vertex_module,
+                entry_point: Some(&vertex.entry),
+                compilation_options: options(&vertex.constants()),
+                buffers: &[],
+            },
+            primitive: *primitive,
+            depth_stencil: depth.clone(),
+            multisample: wgpu::MultisampleState { count: *samples, ..wgpu::MultisampleState::default() },
+            fragment: fragment_module.as_ref().map(|(module, stage, constants)| wgpu::FragmentState {
+                module,
+                entry_point: Some(&stage.entry),
+                compilation_options: options(constants),
+                targets,
+            }),
+            multiview_mask: None,
+            cache: None,
+        })
+    }
+
+    fn bind_group_layout(&mut self, gpu: &Gpu, entries: &[wgt::BindGroupLayoutEntry]) -> wgpu::BindGroupLayout {
+        if let Some(layout) = self.layouts.get(entries) {
+            return layout.clone();
+        }
+        let layout = gpu.device().create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: None, entries });
+        self.layouts.insert(entries.to_vec(), layout.clone());
+        layout
+    }
+
+    fn module(&mut self, gpu: &Gpu, source: &Source) -> wgpu::ShaderModule {
+        let round = self.round;
+        let kept = self.modules.entry(source.hash()).or_insert_with(|| {
+            let (label, source) = match source {
+                Source::Module(m) => {
+                    (m.path.to_str(), wgpu::ShaderSource::Naga(Cow::Owned(naga::Module::clone(&m.naga))))
+                }
+                Source::Text(text) => (Some("engine"), wgpu::ShaderSource::Wgsl(text.clone())),
+            };
+            let value = gpu.device().create_shader_module(wgpu::ShaderModuleDescriptor { label, source });
+            Kept { value, used: round }
+        });
+        kept.used = round;
+        kept.value.clone()
+    }
+}
+
+fn options<'a>(constants: &'a [(&'a str, f64)]) -> wgpu::PipelineCompilationOptions<'a> {
+    wgpu::PipelineCompilationOptions { constants, ..wgpu::PipelineCompilationOptions::default() }
+}

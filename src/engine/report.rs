@@ -1,0 +1,68 @@
+//! What a frame did, as plain data.
+
+use std::collections::BTreeMap;
+
+/// What a frame did.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Report {
+    /// The frame's number as its [`super::Frame`] gave it.
+    pub frame: u64,
+    /// Passes that ran, in program order.
+    pub passes: Vec<PassReport>,
+    /// CPU time of encoding and submitting, in milliseconds.
+    pub encode_ms: f64,
+    /// Counted buffers that were settled. Empty until the GPU's answer is there.
+    pub counts: Vec<CountReport>,
+    /// Whether the GPU's answer (times, counts) is in it.
+    pub complete: bool,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub struct PassReport {
+    /// Instance path.
+    pub path: String,
+    /// How often it ran in the frame: more than once inside `Steps`.
+    pub runs: u32,
+    /// GPU time of all its runs in milliseconds, where the device can tell.
+    pub gpu_ms: Option<f64>,
+}
+
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct CountReport {
+    /// Instance path of the counted buffer.
+    pub path: String,
+    /// How many were appended, the most of all runs in the frame.
+    pub raw: u32,
+    pub capacity: u64,
+    /// Whether it was appended to inside `Steps`, where it cannot grow.
+    pub in_steps: bool,
+}
+
+impl CountReport {
+    pub fn overflowed(&self) -> bool {
+        u64::from(self.raw) > self.capacity
+    }
+}
+
+impl Report {
+    /// Counted buffers that had too little room.
+    pub fn overflows(&self) -> impl Iterator<Item = &CountReport> {
+        self.counts.iter().filter(|c| c.overflowed())
+    }
+
+    /// GPU time of all passes in milliseconds, where the device can tell.
+    pub fn gpu_ms(&self) -> Option<f64> {
+        self.passes.iter().map(|p| p.gpu_ms).sum()
+    }
+}
+
+/// What a preparation made and what it found made.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct BuildReport {
+    pub pipelines_built: usize,
+    pub pipelines_reused: usize,
+    /// Bytes of textures and buffers that the runner holds. Inputs count from their first use.
+    pub memory_bytes: u64,
+    /// Of each `Steps`, whether its state went on from the runner before.
+    pub state_kept: BTreeMap<String, bool>,
+}

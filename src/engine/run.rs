@@ -1,0 +1,315 @@
+//! Carrying out a frame: one encoder, passes in program order, `Steps` as often as asked.
+
+use std::collections::BTreeMap;
+use std::time::Instant;
+
+use super::bind::{Bench, Variant, references};
+use super::encode::{self, Encoding};
+use super::errors;
+use super::gpu::Gpu;
+use super::prepare::{Engine, Runner};
+use super::report::Report;
+use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::graph::value::Value;
+use crate::plan::model::{ObjectRef, Plan};
+
+/// What changes from frame to frame.
+#[derive(Clone, Copy)]
+pub struct Frame<'a> {
+    /// Seconds.
+    pub time: f64,
+    /// Seconds since the frame before.
+    pub delta: f64,
+    pub frame: u64,
+    /// For each of the plan's `Steps`, how many to run now; absent ones run none.
+    pub steps: &'a [u32],
+    /// Gives live names (`camera.position`, `sun.direction`) their values; inside `Steps` those
+    /// of the step. `time`, `delta`, `frame` and `step` need no answer: what it leaves out, the
+    /// engine knows.
+    pub live: &'a dyn Fn(&str, Option<&StepInfo>) -> Option<Value>,
+    /// Which passes run, by index into the plan's; absent: all.
+    pub only: Option<&'a [bool]>,
+}
+
+impl std::fmt::Debug for Frame<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Frame")
+            .field("time", &self.time)
+            .field("delta", &self.delta)
+            .field("frame", &self.frame)
+            .field("steps", &self.steps)
+            .field("only", &self.only)
+            .finish_non_exhaustive()
+    }
+}
+
+/// Which step of which `Steps` runs.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StepInfo {
+    /// Index into the plan's `steps`.
+    pub steps: usize,
+    /// Steps since the last reset: 0 initialises.
+    pub step: u64,
+    /// Seconds: where the step ends, so that after `floor(t * rate)` steps the last one's time
+    /// is the frame's. Once a frame: the frame's.
+    pub time: f64,
+    pub delta: f64,
+}
+
+/// Passes to a submission, so that a thousand steps do not make one huge one.
+const PASSES_TO_A_SUBMISSION: usize = 512;
+
+impl Runner {
+    /// Runs a frame. Waits for nothing.
+    ///
+    /// # Errors
+    /// If a live name has no value, the device refuses something, or it was lost. What is on
+    /// the GPU may then be of no frame, and the steps count as not done.
+    pub fn run(&mut self, engine: &Engine, frame: &Frame<'_>) -> Result<Report, Diagnostics> {
+        let gpu = engine.gpu();
+        gpu.check()?;
+        let began = Instant::now();
+        self.fill_inputs(gpu)?;
+        let steps = self.step_infos(frame);
+        let live =
+            |name: &str, step: Option<&StepInfo>| (frame.live)(name, step).or_else(|| own_value(frame, name, step));
+        self.uniforms.write_frame(gpu, &self.plan, &live)?;
+        self.uniforms.stage_steps(gpu, &self.plan, &steps, &live)?;
+        self.timing.begin(gpu, &self.plan, frame.frame, runs(&self.plan, &steps));
+        let rotation = self.rotation.clone();
+        let done = self.done.clone();
+        if let Err(diagnostic) = self.encode(gpu, frame, &steps) {
+            (self.rotation, self.done) = (rotation, done);
+            return Err(diagnostic.into());
+        }
+        self.timing.submitted(began.elapsed().as_secs_f64() * 1e3);
+        gpu.check()?;
+        Ok(self.timing.preliminary(&self.plan))
+    }
+
+    /// Waits until the GPU is done and gives the last frame's report, with times and counts.
+    ///
+    /// # Errors
+    /// If the device was lost, refused something, or does not end.
+    pub fn finish(&mut self, engine: &Engine) -> Result<Report, Diagnostic> {
+        let gpu = engine.gpu();
+        gpu.wait()?;
+        self.timing.collect(&self.plan);
+        if !self.timing.is_captured() {
+            // All buffers were on their way when the frame was submitted; now they are back.
+            let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+            self.timing.capture(gpu, &self.plan, &mut encoder, &self.fixed.stats);
+            gpu.queue().submit([encoder.finish()]);
+            let encode_ms = self.timing.preliminary(&self.plan).encode_ms;
+            self.timing.submitted(encode_ms);
+            gpu.wait()?;
+            self.timing.collect(&self.plan);
+        }
+        let report = self.timing.take().or_else(|| self.last.clone());
+        self.last.clone_from(&report);
+        Ok(report.unwrap_or_else(|| self.timing.preliminary(&self.plan)))
+    }
+
+    /// The newest report whose times and counts have come, once each. Does not wait.
+    pub fn poll(&mut self, engine: &Engine) -> Option<Report> {
+        engine.gpu().poll();
+        self.timing.collect(&self.plan);
+        let report = self.timing.take();
+        if report.is_some() {
+            self.last.clone_from(&report);
+        }
+        report
+    }
+
+    /// How many steps each `Steps` has done since its reset.
+    pub fn steps_done(&self) -> &[u64] {
+        &self.done
+    }
+
+    /// Inputs that nobody filled or shared get zeroed memory.
+    fn fill_inputs(&mut self, gpu: &Gpu) -> Result<(), Diagnostics> {
+        if self.inputs_filled {
+            return Ok(());
+        }
+        let mut found = Diagnostics::new();
+        for object in 0..self.plan.objects.len() {
+            match self.pool.ensure(gpu, &self.plan, object) {
+                Ok(true) => self.forget_variants(object),
+                Ok(false) => {}
+                Err(diagnostic) => found.push(diagnostic),
+            }
+        }
+        self.inputs_filled = found.is_empty();
+        if found.is_empty() { Ok(()) } else { Err(found) }
+    }
+
+    /// The steps of a frame in the order in which they run.
+    fn step_infos(&self, frame: &Frame<'_>) -> Vec<StepInfo> {
+        let mut order: Vec<usize> = (0..self.plan.steps.len()).collect();
+        order.sort_by_key(|s| self.plan.steps[*s].passes.start);
+        let mut infos = Vec::new();
+        for steps in order {
+            let rate = self.plan.steps[steps].rate;
+            let times = frame.steps.get(steps).copied().unwrap_or(0);
+            infos.extend((0..u64::from(times)).map(|i| {
+                let step = self.done[steps] + i;
+                let (time, delta) = match rate {
+                    Some(rate) => ((step + 1) as f64 / rate, 1.0 / rate),
+                    None => (frame.time, frame.delta),
+                };
+                StepInfo { steps, step, time, delta }
+            }));
+        }
+        infos
+    }
+
+    fn encode(&mut self, gpu: &Gpu, frame: &Frame<'_>, steps: &[StepInfo]) -> Result<(), Diagnostic> {
+        let mut recorder = Recorder::new(gpu);
+        recorder.encoder.clear_buffer(&self.fixed.stats, 0, None);
+        let mut staged = 0;
+        let mut at = 0;
+        while at < self.plan.passes.len() {
+            let Some(block) = self.plan.steps.iter().position(|s| s.passes.contains(&at)) else {
+                self.encode_pass(gpu, frame, &mut recorder, at)?;
+                at += 1;
+                continue;
+            };
+            let range = self.plan.steps[block].passes.clone();
+            for info in steps.iter().filter(|info| info.steps == block) {
+                self.uniforms.begin_step(&mut recorder.encoder, block, &mut staged);
+                for pass in range.clone() {
+                    self.encode_pass(gpu, frame, &mut recorder, pass)?;
+                }
+                self.turn(info);
+            }
+            at = range.end.max(at + 1);
+        }
+        self.timing.capture(gpu, &self.plan, &mut recorder.encoder, &self.fixed.stats);
+        recorder.submit(gpu);
+        Ok(())
+    }
+
+    fn encode_pass(
+        &mut self,
+        gpu: &Gpu,
+        frame: &Frame<'_>,
+        recorder: &mut Recorder,
+        index: usize,
+    ) -> Result<(), Diagnostic> {
+        if frame.only.is_some_and(|only| only.get(index) == Some(&false)) {
+            return Ok(());
+        }
+        let key = self.ensure_variant(gpu, index)?;
+        let Some(variant) = self.variants[index].get(&key) else { return Ok(()) };
+        let pair = self.timing.mark(index, encode::can_be_timed(variant, self.timing.times_encoders()));
+        let pass = &self.plan.passes[index];
+        Encoding {
+            encoder: &mut recorder.encoder,
+            plan: &self.plan,
+            pool: &self.pool,
+            fixed: &self.fixed,
+            rotation: &self.rotation,
+            timing: &self.timing,
+            pair,
+            loads_are_free: self.loads_are_free,
+        }
+        .pass(pass, self.pipelines[index].as_deref(), variant);
+        recorder.count(gpu);
+        Ok(())
+    }
+
+    /// Makes what the pass needs for the current rotation, if it is not there.
+    pub(super) fn ensure_variant(&mut self, gpu: &Gpu, index: usize) -> Result<usize, Diagnostic> {
+        let key = self.rotation_key(index);
+        if self.variants[index].contains_key(&key) {
+            return Ok(key);
+        }
+        let bench = Bench {
+            gpu,
+            plan: &self.plan,
+            pool: &self.pool,
+            uniforms: &self.uniforms,
+            fixed: &self.fixed,
+            rotation: &self.rotation,
+        };
+        let pipeline = self.pipelines[index].as_deref();
+        let pass = &self.plan.passes[index];
+        let variant = errors::scoped(gpu, || bench.variant(index, pipeline))
+            .and_then(|made| made)
+            .map_err(|e| errors::refused("what is bound to", &pass.path, pass.span, &e))?;
+        self.variants[index].insert(key, variant);
+        Ok(key)
+    }
+
+    /// One number for the rotations of all rings that a pass touches.
+    fn rotation_key(&self, index: usize) -> usize {
+        self.rings_of[index]
+            .iter()
+            .fold(0, |key, ring| key * self.plan.rings[*ring].objects.len() + self.rotation[*ring])
+    }
+
+    fn turn(&mut self, info: &StepInfo) {
+        self.done[info.steps] += 1;
+        for (ring, rotation) in self.plan.rings.iter().zip(&mut self.rotation) {
+            if ring.steps == info.steps && !ring.objects.is_empty() {
+                *rotation = (*rotation + ring.turn) % ring.objects.len();
+            }
+        }
+    }
+
+    /// Forgets what was made with the memory that an object had.
+    pub(super) fn forget_variants(&mut self, object: usize) {
+        let handle = self.pool.handle(object);
+        for (pass, variants) in self.plan.passes.iter().zip(&mut self.variants) {
+            let touches =
+                |r: ObjectRef| super::pool::candidates(&self.plan, r).iter().any(|id| self.pool.handle(*id) == handle);
+            if references(pass).into_iter().any(touches) {
+                variants.clear();
+            }
+        }
+    }
+}
+
+/// By key of [`Runner::rotation_key`].
+pub(super) type Variants = BTreeMap<usize, Variant>;
+
+struct Recorder {
+    encoder: wgpu::CommandEncoder,
+    passes: usize,
+}
+
+impl Recorder {
+    fn new(gpu: &Gpu) -> Self {
+        let label = Some("frame");
+        let encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor { label });
+        Self { encoder, passes: 0 }
+    }
+
+    /// Counts a pass, and submits now and then.
+    fn count(&mut self, gpu: &Gpu) {
+        self.passes += 1;
+        if self.passes >= PASSES_TO_A_SUBMISSION {
+            std::mem::replace(self, Self::new(gpu)).submit(gpu);
+        }
+    }
+
+    fn submit(self, gpu: &Gpu) {
+        gpu.queue().submit([self.encoder.finish()]);
+    }
+}
+
+/// How many runs of passes a frame has, at most.
+fn runs(plan: &Plan, steps: &[StepInfo]) -> u32 {
+    let inside: usize = steps.iter().map(|info| plan.steps[info.steps].passes.len()).sum();
+    u32::try_from(plan.passes.len() + inside).unwrap_or(u32::MAX / 4)
+}
+
+fn own_value(frame: &Frame<'_>, name: &str, step: Option<&StepInfo>) -> Option<Value> {
+    match name {
+        "time" => Some(Value::Float(step.map_or(frame.time, |s| s.time))),
+        "delta" => Some(Value::Float(step.map_or(frame.delta, |s| s.delta))),
+        "frame" => i64::try_from(frame.frame).ok().map(Value::Int),
+        "step" => step.and_then(|s| i64::try_from(s.step).ok()).map(Value::Int),
+        _ => None,
+    }
+}

@@ -1,0 +1,293 @@
+//! GPU times and counts: written during a frame, read back later without a stall.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU8, Ordering};
+
+use super::bind::stat_of;
+use super::gpu::Gpu;
+use super::report::{CountReport, PassReport, Report};
+use crate::plan::model::{ObjectKind, PassKind, Plan};
+
+/// Frames whose answers may be on their way at once.
+const IN_FLIGHT: usize = 3;
+/// Runs of passes that are timed in a frame: wgpu allows 4,096 queries to a set.
+const MOST_PAIRS: u32 = 2048;
+
+const FREE: u8 = 0;
+const WAITING: u8 = 1;
+const READY: u8 = 2;
+const FAILED: u8 = 3;
+
+#[derive(Debug)]
+struct Slot {
+    buffer: wgpu::Buffer,
+    state: Arc<AtomicU8>,
+    frame: Frame,
+}
+
+/// What has to be known of a frame to read its answer.
+#[derive(Clone, Debug, Default)]
+struct Frame {
+    number: u64,
+    sequence: u64,
+    encode_ms: f64,
+    /// The pass of each pair of queries.
+    marks: Vec<usize>,
+    /// How often each pass ran.
+    runs: Vec<u32>,
+}
+
+#[derive(Debug)]
+pub(super) struct Timing {
+    queries: Option<wgpu::QuerySet>,
+    resolved: Option<wgpu::Buffer>,
+    pairs: u32,
+    in_encoders: bool,
+    /// Nanoseconds to a tick.
+    period: f32,
+    stats_bytes: u64,
+    slots: Vec<Slot>,
+    now: Frame,
+    /// The slot that the current frame's answer goes to.
+    captured: Option<usize>,
+    latest: Option<(u64, Report)>,
+}
+
+impl Timing {
+    pub fn new(gpu: &Gpu, plan: &Plan) -> Self {
+        let features = gpu.features();
+        let settles = stat_of(plan, plan.passes.len());
+        let mut timing = Self {
+            queries: None,
+            resolved: None,
+            pairs: 0,
+            in_encoders: features.contains(wgpu::Features::TIMESTAMP_QUERY_INSIDE_ENCODERS),
+            period: gpu.queue().get_timestamp_period(),
+            stats_bytes: settles as u64 * 4,
+            slots: Vec::new(),
+            now: Frame::default(),
+            captured: None,
+            latest: None,
+        };
+        timing.grow(gpu, plan.passes.len() as u32);
+        timing
+    }
+
+    /// Makes room for so many runs of passes.
+    fn grow(&mut self, gpu: &Gpu, runs: u32) {
+        let timed = gpu.features().contains(wgpu::Features::TIMESTAMP_QUERY);
+        let pairs = if timed { runs.next_power_of_two().clamp(16, MOST_PAIRS) } else { 0 };
+        if pairs <= self.pairs && !self.slots.is_empty() {
+            return;
+        }
+        let buffer = |label, size, usage| {
+            gpu.device().create_buffer(&wgpu::BufferDescriptor {
+                label: Some(label),
+                size,
+                usage,
+                mapped_at_creation: false,
+            })
+        };
+        if pairs > 0 {
+            self.queries = Some(gpu.device().create_query_set(&wgpu::QuerySetDescriptor {
+                label: Some("times"),
+                ty: wgpu::QueryType::Timestamp,
+                count: pairs * 2,
+            }));
+            let usage = wgpu::BufferUsages::QUERY_RESOLVE | wgpu::BufferUsages::COPY_SRC;
+            self.resolved = Some(buffer("times", u64::from(pairs) * 16, usage));
+        }
+        self.pairs = pairs;
+        let bytes = u64::from(pairs) * 16 + self.stats_bytes;
+        let usage = wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST;
+        self.slots = (0..IN_FLIGHT)
+            .map(|_| Slot {
+                buffer: buffer("answers", bytes.max(4), usage),
+                state: Arc::new(AtomicU8::new(FREE)),
+                frame: Frame::default(),
+            })
+            .collect();
+    }
+
+    /// Begins a frame that will run passes so many times.
+    pub fn begin(&mut self, gpu: &Gpu, plan: &Plan, number: u64, runs: u32) {
+        self.grow(gpu, runs);
+        self.now.number = number;
+        self.now.sequence += 1;
+        self.now.marks.clear();
+        self.now.runs.clear();
+        self.now.runs.resize(plan.passes.len(), 0);
+        self.captured = None;
+    }
+
+    /// Notes that a pass runs, and gives it a pair of queries if it is to be timed and there
+    /// are any left.
+    pub fn mark(&mut self, pass: usize, timed: bool) -> Option<u32> {
+        self.now.runs[pass] += 1;
+        let pair = self.now.marks.len() as u32;
+        if !timed || pair >= self.pairs {
+            return None;
+        }
+        self.now.marks.push(pass);
+        Some(pair)
+    }
+
+    pub fn render(&self, pair: Option<u32>, first: bool, last: bool) -> Option<wgpu::RenderPassTimestampWrites<'_>> {
+        let (begin, end) = queries(pair?, first, last)?;
+        Some(wgpu::RenderPassTimestampWrites {
+            query_set: self.queries.as_ref()?,
+            beginning_of_pass_write_index: begin,
+            end_of_pass_write_index: end,
+        })
+    }
+
+    pub fn compute(&self, pair: Option<u32>, first: bool, last: bool) -> Option<wgpu::ComputePassTimestampWrites<'_>> {
+        let (begin, end) = queries(pair?, first, last)?;
+        Some(wgpu::ComputePassTimestampWrites {
+            query_set: self.queries.as_ref()?,
+            beginning_of_pass_write_index: begin,
+            end_of_pass_write_index: end,
+        })
+    }
+
+    /// Whether what is no pass can be timed.
+    pub fn times_encoders(&self) -> bool {
+        self.in_encoders
+    }
+
+    /// Writes the begin (0) or end (1) of a pair between passes.
+    pub fn write(&self, encoder: &mut wgpu::CommandEncoder, pair: Option<u32>, end: u32) {
+        if let (Some(pair), Some(queries)) = (pair, &self.queries) {
+            encoder.write_timestamp(queries, pair * 2 + end);
+        }
+    }
+
+    /// Copies times and counts to a buffer that can be read, if one is free.
+    pub fn capture(&mut self, gpu: &Gpu, plan: &Plan, encoder: &mut wgpu::CommandEncoder, stats: &wgpu::Buffer) {
+        if self.slots.iter().all(|s| s.state.load(Ordering::Acquire) != FREE) {
+            gpu.poll();
+            self.collect(plan);
+        }
+        let Some(at) = self.slots.iter().position(|s| s.state.load(Ordering::Acquire) == FREE) else { return };
+        let marks = self.now.marks.len() as u64;
+        let target = &self.slots[at].buffer;
+        if let (Some(queries), Some(resolved)) = (&self.queries, &self.resolved)
+            && marks > 0
+        {
+            encoder.resolve_query_set(queries, 0..marks as u32 * 2, resolved, 0);
+            encoder.copy_buffer_to_buffer(resolved, 0, target, 0, marks * 16);
+        }
+        if self.stats_bytes > 0 {
+            encoder.copy_buffer_to_buffer(stats, 0, target, u64::from(self.pairs) * 16, self.stats_bytes);
+        }
+        self.captured = Some(at);
+    }
+
+    pub fn is_captured(&self) -> bool {
+        self.captured.is_some()
+    }
+
+    /// Asks for the captured answer, after the submission.
+    pub fn submitted(&mut self, encode_ms: f64) {
+        self.now.encode_ms = encode_ms;
+        let Some(at) = self.captured else { return };
+        let slot = &mut self.slots[at];
+        slot.frame.clone_from(&self.now);
+        slot.state.store(WAITING, Ordering::Release);
+        let state = Arc::clone(&slot.state);
+        slot.buffer.map_async(wgpu::MapMode::Read, .., move |mapped| {
+            state.store(if mapped.is_ok() { READY } else { FAILED }, Ordering::Release);
+        });
+    }
+
+    /// Reads the answers that have come.
+    pub fn collect(&mut self, plan: &Plan) {
+        for slot in &self.slots {
+            match slot.state.load(Ordering::Acquire) {
+                READY => {
+                    if let Ok(view) = slot.buffer.get_mapped_range(..) {
+                        let report = self.read(plan, &slot.frame, &view);
+                        if self.latest.as_ref().is_none_or(|(sequence, _)| *sequence < slot.frame.sequence) {
+                            self.latest = Some((slot.frame.sequence, report));
+                        }
+                    }
+                    slot.buffer.unmap();
+                    slot.state.store(FREE, Ordering::Release);
+                }
+                FAILED => slot.state.store(FREE, Ordering::Release),
+                _ => {}
+            }
+        }
+    }
+
+    /// The newest complete report, once.
+    pub fn take(&mut self) -> Option<Report> {
+        self.latest.take().map(|(_, report)| report)
+    }
+
+    /// What is known of the current frame before the GPU answers.
+    pub fn preliminary(&self, plan: &Plan) -> Report {
+        report(plan, &self.now)
+    }
+
+    fn read(&self, plan: &Plan, frame: &Frame, bytes: &[u8]) -> Report {
+        let mut report = report(plan, frame);
+        report.complete = true;
+        let (times, stats) = bytes.split_at((self.pairs as usize * 16).min(bytes.len()));
+        let mut spent: Vec<Option<f64>> = vec![None; plan.passes.len()];
+        for (pair, pass) in times.chunks_exact(16).zip(&frame.marks) {
+            let ticks = |at: usize| u64::from_le_bytes(std::array::from_fn(|i| pair[at + i]));
+            let ms = ticks(8).saturating_sub(ticks(0)) as f64 * f64::from(self.period) * 1e-6;
+            *spent[*pass].get_or_insert(0.0) += ms;
+        }
+        let ran = (0..plan.passes.len()).filter(|p| frame.runs[*p] > 0);
+        for (pass, index) in report.passes.iter_mut().zip(ran) {
+            pass.gpu_ms = spent[index];
+        }
+        report.counts = counts(plan, frame, stats);
+        report
+    }
+}
+
+fn queries(pair: u32, first: bool, last: bool) -> Option<(Option<u32>, Option<u32>)> {
+    (first || last).then(|| (first.then_some(pair * 2), last.then_some(pair * 2 + 1)))
+}
+
+fn report(plan: &Plan, frame: &Frame) -> Report {
+    let ran = plan.passes.iter().zip(&frame.runs).filter(|(_, runs)| **runs > 0);
+    Report {
+        frame: frame.number,
+        passes: ran.map(|(p, runs)| PassReport { path: p.path.clone(), runs: *runs, gpu_ms: None }).collect(),
+        encode_ms: frame.encode_ms,
+        counts: Vec::new(),
+        complete: false,
+    }
+}
+
+/// One entry for each counted buffer, with the most that any of its settling passes saw.
+fn counts(plan: &Plan, frame: &Frame, stats: &[u8]) -> Vec<CountReport> {
+    let mut found: Vec<CountReport> = Vec::new();
+    let settles = plan.passes.iter().enumerate().filter_map(|(index, pass)| match &pass.kind {
+        PassKind::Settle { counted, .. } => Some((index, pass, *counted)),
+        _ => None,
+    });
+    for ((index, pass, counted), word) in settles.zip(stats.chunks_exact(4)) {
+        if frame.runs[index] == 0 {
+            continue;
+        }
+        let raw = u32::from_le_bytes(std::array::from_fn(|i| word[i]));
+        let Some(id) = super::pool::candidates(plan, counted).first().copied() else { continue };
+        let object = &plan.objects[id];
+        let ObjectKind::Buffer(buffer) = &object.kind else { continue };
+        match found.iter_mut().find(|c| c.path == object.path) {
+            Some(known) => known.raw = known.raw.max(raw),
+            None => found.push(CountReport {
+                path: object.path.clone(),
+                raw,
+                capacity: buffer.items,
+                in_steps: pass.steps.is_some(),
+            }),
+        }
+    }
+    found
+}

@@ -1,0 +1,168 @@
+//! Filling inputs: bytes from the host, or what another runner holds.
+
+use super::bind::resolve;
+use super::mips::padded_row;
+use super::pool::Memory;
+use super::prepare::{Engine, Runner};
+use super::texel;
+use crate::diagnostic::{Code, Diagnostic};
+use crate::plan::model::{ObjectId, ObjectKind, ObjectRef, Texture};
+
+impl Runner {
+    /// Writes the bytes of a buffer from its start; the rest stays as it is.
+    ///
+    /// # Errors
+    /// If the object is no buffer or has less room.
+    pub fn upload_buffer(&mut self, engine: &Engine, object: ObjectId, bytes: &[u8]) -> Result<(), Diagnostic> {
+        self.own(engine, object)?;
+        let buffer = self.pool.buffer(object).ok_or_else(|| self.unfit(object, "is no buffer"))?;
+        let room = match &self.plan.objects[object].kind {
+            ObjectKind::Buffer(b) => b.bytes(),
+            ObjectKind::Texture(_) => 0,
+        };
+        if bytes.len() as u64 > room {
+            return Err(self.unfit(object, &format!("has room for {room} bytes, not for {}", bytes.len())));
+        }
+        // Writes are of whole words.
+        let whole = bytes.len() / 4 * 4;
+        engine.gpu().queue().write_buffer(buffer, 0, &bytes[..whole]);
+        if whole < bytes.len() {
+            let mut word = [0; 4];
+            word[..bytes.len() - whole].copy_from_slice(&bytes[whole..]);
+            engine.gpu().queue().write_buffer(buffer, whole as u64, &word);
+        }
+        Ok(())
+    }
+
+    /// Writes one layer (or slice of a volume) of one mip, rows tightly packed from the top.
+    ///
+    /// # Errors
+    /// If the object is no texture, or the bytes are not exactly those of the layer.
+    pub fn upload_texture(
+        &mut self,
+        engine: &Engine,
+        object: ObjectId,
+        mip: u32,
+        layer: u32,
+        bytes: &[u8],
+    ) -> Result<(), Diagnostic> {
+        self.own(engine, object)?;
+        let texture = self.pool.texture(object).ok_or_else(|| self.unfit(object, "is no texture"))?;
+        let (width, height) = ((texture.width() >> mip).max(1), (texture.height() >> mip).max(1));
+        let format = texture.format();
+        let size = texel::size(format).ok_or_else(|| self.unfit(object, "has a format that cannot be uploaded"))?;
+        let (row, expected) = (width as usize * size, width as usize * height as usize * size);
+        if bytes.len() != expected || mip >= texture.mip_level_count() {
+            let message = format!("takes {expected} bytes for mip {mip}, not {}", bytes.len());
+            return Err(self.unfit(object, &message));
+        }
+        debug_assert!(padded_row(format, width, size) as usize >= row);
+        engine.gpu().queue().write_texture(
+            wgpu::TexelCopyTextureInfo {
+                texture,
+                mip_level: mip,
+                origin: wgpu::Origin3d { x: 0, y: 0, z: layer },
+                aspect: wgpu::TextureAspect::All,
+            },
+            bytes,
+            wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(row as u32), rows_per_image: Some(height) },
+            wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+        );
+        Ok(())
+    }
+
+    /// Makes what another runner on the same device holds this runner's input, without a copy.
+    /// To be called again when either was prepared anew, or the other's state turned.
+    ///
+    /// # Errors
+    /// If one of them is nothing like the other, or the other has no memory yet.
+    pub fn share(&mut self, object: ObjectId, from: &Runner, source: ObjectRef) -> Result<(), Diagnostic> {
+        let id = resolve(&from.plan, &from.rotation, source);
+        let Some(memory) = from.pool.memory(id) else {
+            return Err(self.unfit(object, &format!("cannot take `{}`, which is empty", from.plan.objects[id].path)));
+        };
+        self.share_memory(object, memory.clone())
+    }
+
+    /// Makes an embedder's texture this runner's input, without a copy.
+    ///
+    /// # Errors
+    /// If its format, size, mips or layers are not those that the plan was made for.
+    pub fn share_texture(&mut self, object: ObjectId, texture: &wgpu::Texture) -> Result<(), Diagnostic> {
+        self.share_memory(object, Memory::Texture(texture.clone()))
+    }
+
+    /// Makes an embedder's buffer this runner's input, without a copy.
+    ///
+    /// # Errors
+    /// If it is smaller than the plan was made for.
+    pub fn share_buffer(&mut self, object: ObjectId, buffer: &wgpu::Buffer) -> Result<(), Diagnostic> {
+        self.share_memory(object, Memory::Buffer(buffer.clone()))
+    }
+
+    /// The texture that a reference stands for now, for those who show or use it on the same
+    /// device.
+    pub fn texture(&self, object: ObjectRef) -> Option<&wgpu::Texture> {
+        self.pool.texture(resolve(&self.plan, &self.rotation, object))
+    }
+
+    /// The buffer that a reference stands for now.
+    pub fn buffer(&self, object: ObjectRef) -> Option<&wgpu::Buffer> {
+        self.pool.buffer(resolve(&self.plan, &self.rotation, object))
+    }
+
+    fn share_memory(&mut self, object: ObjectId, memory: Memory) -> Result<(), Diagnostic> {
+        let fits = match (&self.plan.objects[object].kind, &memory) {
+            (ObjectKind::Texture(t), Memory::Texture(texture)) => is_like(t, texture),
+            (ObjectKind::Buffer(b), Memory::Buffer(buffer)) => buffer.size() >= b.bytes(),
+            _ => false,
+        };
+        if !fits {
+            return Err(self.unfit(object, &format!("was planned as {}", self.planned(object))));
+        }
+        if self.pool.share(object, memory) {
+            self.forget_variants(object);
+        }
+        Ok(())
+    }
+
+    /// Gives an object memory of its own to write to.
+    fn own(&mut self, engine: &Engine, object: ObjectId) -> Result<(), Diagnostic> {
+        self.pool.own(object);
+        if self.pool.ensure(engine.gpu(), &self.plan, object)? {
+            self.forget_variants(object);
+        }
+        Ok(())
+    }
+
+    fn planned(&self, object: ObjectId) -> String {
+        match &self.plan.objects[object].kind {
+            ObjectKind::Texture(t) => {
+                format!(
+                    "{} of {} x {} x {}, {} mips",
+                    crate::format::name(t.format),
+                    t.width,
+                    t.height,
+                    t.layers,
+                    t.mips
+                )
+            }
+            ObjectKind::Buffer(b) => format!("a buffer of {} bytes", b.bytes()),
+        }
+    }
+
+    fn unfit(&self, object: ObjectId, why: &str) -> Diagnostic {
+        let object = &self.plan.objects[object];
+        Diagnostic::error(Code::BAD_PARAMETER, format!("`{}` {why}", object.path)).at(object.span, "declared here")
+    }
+}
+
+fn is_like(planned: &Texture, texture: &wgpu::Texture) -> bool {
+    planned.format == texture.format()
+        && planned.width == texture.width()
+        && planned.height == texture.height()
+        && planned.layers == texture.depth_or_array_layers()
+        && planned.mips <= texture.mip_level_count()
+        && planned.samples == texture.sample_count()
+        && planned.is_3d == (texture.dimension() == wgpu::TextureDimension::D3)
+}

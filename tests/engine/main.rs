@@ -1,0 +1,59 @@
+//! The engine carries out plans as they say, read back from a real device.
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+mod compute;
+mod draw;
+mod harness;
+mod lifecycle;
+mod steps;
+mod support;
+mod transfer;
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    harness::run(cases![
+        compute::reads_and_writes_buffers,
+        compute::zero_workgroups_are_skipped,
+        compute::counts_drive_dispatches,
+        compute::an_overflow_is_clamped_and_told,
+        compute::a_count_of_zero_dispatches_nothing,
+        compute::more_than_65535_groups_are_folded,
+        draw::fullscreen_has_uv_from_the_top_left,
+        draw::two_draws_add_into_32_bit_floats,
+        draw::minimum_and_masks_hold,
+        draw::several_targets_of_several_kinds,
+        draw::nearest_and_farthest_of_reversed_depth,
+        draw::depth_is_tested_and_sampled_in_one_pass,
+        draw::stencil_marks_and_masks,
+        draw::samples_are_resolved,
+        draw::a_region_is_viewport_and_scissor,
+        draw::nothing_to_draw_still_clears,
+        draw::indices_choose_vertices,
+        draw::counts_drive_draws,
+        draw::a_shader_writes_draw_arguments,
+        transfer::clears_touch_only_their_view,
+        transfer::volumes_are_cleared_slice_by_slice,
+        transfer::depth_is_cleared,
+        transfer::buffers_clear_to_words_of_their_type,
+        transfer::copies_of_views_and_buffers,
+        transfer::mips_keep_the_mean_of_each_layer,
+        transfer::mips_of_two_by_two_are_their_mean,
+        transfer::mips_of_volumes_are_stored,
+        steps::uniforms_are_packed_where_the_shader_has_them,
+        steps::state_swaps_over_steps_and_frames,
+        steps::a_thousand_steps_in_a_frame,
+        steps::state_goes_on_unless_its_key_changes,
+        steps::the_host_answers_with_values_of_the_step,
+        steps::chosen_passes_alone_run,
+        lifecycle::pipelines_are_found_again,
+        lifecycle::a_failure_leaves_the_runner_before,
+        lifecycle::a_lacking_feature_is_told_by_name,
+        lifecycle::passes_are_timed,
+        lifecycle::a_texture_goes_from_graph_to_graph,
+        lifecycle::objects_share_memory_as_the_policy_says,
+        lifecycle::samplers_filter_or_not,
+        lifecycle::a_lost_device_is_told_as_such,
+        lifecycle::an_unknown_backend_is_told,
+    ])
+}
