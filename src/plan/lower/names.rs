@@ -11,6 +11,9 @@ use crate::graph::value::Value;
 use crate::plan::fields;
 use crate::plan::model::{Causes, InputInfo, UniformValue};
 
+/// How many names may lead to one another: parts in parts, and `let` names of `let` names.
+const MAX_DEPTH: usize = 200;
+
 /// What a name of a graph file declares.
 #[derive(Clone, Debug)]
 pub(in crate::plan) enum Local {
@@ -89,6 +92,17 @@ impl Lowering<'_> {
 
     /// What `path` stands for in a graph instance.
     pub fn resolve(&mut self, s: ScopeId, path: &str, span: Span) -> Result<Entity> {
+        if self.depth > MAX_DEPTH {
+            let message = format!("`{path}` leads to itself: an input of a part is fed by what the part makes of it");
+            return Err(traced(fault(Code::CYCLE, message, span, "part of the circle"), &self.scopes[s].trace));
+        }
+        self.depth += 1;
+        let entity = self.resolve_here(s, path, span);
+        self.depth -= 1;
+        entity
+    }
+
+    fn resolve_here(&mut self, s: ScopeId, path: &str, span: Span) -> Result<Entity> {
         if let Some((_, value)) = self.scopes[s].counters.iter().rev().find(|(name, _)| name == path) {
             return Ok(Entity::Scalar(Scalar::known(Value::Int(*value))));
         }
