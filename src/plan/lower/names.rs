@@ -12,7 +12,7 @@ use crate::plan::fields;
 use crate::plan::model::{Causes, InputInfo, UniformValue};
 
 /// How many names may lead to one another: parts in parts, and `let` names of `let` names.
-const MAX_DEPTH: usize = 200;
+const MAX_DEPTH: usize = 64;
 
 /// What a name of a graph file declares.
 #[derive(Clone, Debug)]
