@@ -1,9 +1,15 @@
 //! WGSL modules: what is told of wrong ones, and what is reflected of good ones.
 #![allow(clippy::unwrap_used, reason = "tests may panic")]
 
+#[path = "support/golden.rs"]
+mod golden;
+
 mod shader {
+    mod errors;
+    mod imports;
     mod reflection;
     mod repository;
+    mod robust;
 
     use meniscus::diagnostic::{Sources, Style, render_all};
     use meniscus::files::MemoryFiles;

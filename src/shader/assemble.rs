@@ -85,10 +85,17 @@ impl Reader<'_> {
         let at = self.units.len();
         self.units.push(Unit { path: found.path.clone(), file, length: text.len() as u32, via, imports: Vec::new() });
         self.texts.push((text.clone(), scanned.clone()));
+        let (mut wrong, mut last_line) = (0, 0);
         for import in imports(&text, &scanned) {
             match import {
                 Ok(path) => self.import(at, &found.path, &text, path),
-                Err(token) => self.out.diagnostics.push(unknown_directive(file, token)),
+                Err(token) => {
+                    let line = self.sources.position(file, token.start as u32).line;
+                    if line > last_line && wrong < WRONG_DIRECTIVES {
+                        self.out.diagnostics.push(unknown_directive(file, token));
+                    }
+                    (wrong, last_line) = (wrong + 1, line);
+                }
             }
         }
         Some(at)
@@ -140,23 +147,22 @@ fn looked_at(tried: &[PathBuf]) -> String {
     format!("looked at {} and in the carried library", paths.join(", "))
 }
 
-/// Adds the library file whose path, or else whose bare name, is nearest.
+/// Adds the library file whose name, whatever its folder, is the same or else nearest.
 fn suggest(diagnostic: Diagnostic, name: &str) -> Diagnostic {
     let known: Vec<&str> = files::library().filter_map(|path| path.strip_prefix("shaders/")).collect();
-    let stem = |path: &'static str| path.rsplit('/').next().unwrap_or(path);
-    let same_stem = known.iter().find(|path| stem(path) == stem_of(name)).copied();
-    let best = nearest(name, known.iter().copied()).or(same_stem).or_else(|| {
-        let close = nearest(stem_of(name), known.iter().map(|path| stem(path)))?;
-        known.iter().find(|path| stem(path) == close).copied()
-    });
+    let by_stem = |stem: &str| known.iter().find(|path| stem_of(path) == stem).copied();
+    let best =
+        by_stem(stem_of(name)).or_else(|| by_stem(nearest(stem_of(name), known.iter().map(|path| stem_of(path)))?));
     match best {
         Some(best) => diagnostic.hint(format!("did you mean `{best}`?")),
         None => diagnostic,
     }
 }
 
+/// The name of a file without its folders and ending.
 fn stem_of(name: &str) -> &str {
-    name.rsplit(['/', '\\']).next().unwrap_or(name)
+    let file = name.rsplit(['/', '\\']).next().unwrap_or(name);
+    file.strip_suffix(".wgsl").unwrap_or(file)
 }
 
 fn not_utf8(path: &str, bytes: &[u8], valid: usize, via: Option<(usize, Span)>) -> Diagnostic {
@@ -171,6 +177,9 @@ fn unknown_directive(file: FileId, token: Token) -> Diagnostic {
         .at(Span::new(file, token.start, token.end), "not an import")
         .hint("`#import` is the only directive that starts with `#`; there is no preprocessor")
 }
+
+/// How many wrong directives of a file are told of, one a line.
+const WRONG_DIRECTIVES: usize = 20;
 
 /// The paths of a file's imports, quotes included, or the `#` of what is no import.
 fn imports<'a>(text: &'a str, scanned: &'a Scan) -> impl Iterator<Item = Result<Token, Token>> + 'a {

@@ -164,7 +164,7 @@ impl<'a> Reader<'a> {
         }
         let ends = starts.iter().skip(1).map(|next| end_of_type(tokens, *next)).chain([tokens.len()]);
         let field = |(start, end): (&usize, usize)| {
-            let last = tokens[*start..end].iter().rfind(|t| !t.is(b',')).unwrap_or(&tokens[*start]);
+            let last = tokens[*start..end.max(*start)].iter().rfind(|t| !t.is(b',')).unwrap_or(&tokens[*start]);
             Field { name: tokens[*start].text(self.text).to_owned(), span: self.span(&tokens[*start], last) }
         };
         starts.iter().zip(ends).map(field).collect()

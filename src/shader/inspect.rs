@@ -1,5 +1,6 @@
 //! Reflection: from a validated naga module to [`Module`].
 
+use std::cell::Cell;
 use std::sync::Arc;
 
 use naga::valid::FunctionInfo;
@@ -15,10 +16,13 @@ use super::types::{self, Types};
 use super::walk::{self, Doings};
 use crate::diagnostic::Span;
 
+/// Members of structs that are spelt out in one module, all told.
+const MEMBERS: u32 = 100_000;
+
 pub(super) fn inspect(assembled: Assembled, parsed: Parsed) -> Module {
     let Assembled { whole, map, declarations, .. } = assembled;
     let inspector = Inspector {
-        types: Types { module: &parsed.module, map: &map, declarations: &declarations },
+        types: Types { module: &parsed.module, map: &map, declarations: &declarations, budget: Cell::new(MEMBERS) },
         parsed: &parsed,
         functions: walk::functions(&parsed.module, &parsed.info),
     };

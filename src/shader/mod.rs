@@ -13,6 +13,7 @@
 mod assemble;
 mod declare;
 mod inspect;
+mod limits;
 mod load;
 mod map;
 mod message;

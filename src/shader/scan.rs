@@ -4,7 +4,7 @@
 /// What a token is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Kind {
-    /// An identifier, keyword or number.
+    /// An identifier, keyword or number (but for the sign of its exponent).
     Word,
     /// A string on one line, quotes included. WGSL has none; imports do.
     Text,
@@ -73,7 +73,8 @@ pub(super) fn scan(text: &str) -> Scan {
 fn token(rest: &[u8]) -> (Kind, usize) {
     // Any byte of a multi-byte character counts as part of a word; naga knows which may be.
     let is_word = |b: &u8| b.is_ascii_alphanumeric() || *b == b'_' || *b >= 0x80;
-    let count = rest.iter().take_while(|b| is_word(b)).count();
+    let is_number = rest[0].is_ascii_digit();
+    let count = rest.iter().take_while(|b| is_word(b) || (is_number && **b == b'.')).count();
     if count > 0 {
         return (Kind::Word, count);
     }
@@ -145,6 +146,7 @@ mod tests {
     fn comments_are_skipped_and_nest() {
         assert_eq!(texts("a // b\nc /* d /* e */ f */ g"), ["a", "c", "g"]);
         assert_eq!(texts("a // b\u{2028}c"), ["a", "\u{2028}c"]);
+        assert_eq!(texts("a.x+1.5f"), ["a", ".", "x", "+", "1.5f"]);
         assert_eq!(scan("a /* b /* c */").open_comment, Some(2));
         assert_eq!(scan("/*/").open_comment, Some(0));
     }

@@ -1,5 +1,7 @@
 //! naga's types as this program's.
 
+use std::cell::Cell;
+
 use naga::{ImageClass, ImageDimension, ScalarKind, StorageAccess, TypeInner};
 
 use super::declare::Declarations;
@@ -13,6 +15,9 @@ pub(super) struct Types<'a> {
     pub module: &'a naga::Module,
     pub map: &'a SourceMap,
     pub declarations: &'a Declarations,
+    /// Members that types may still be spelt out into: structs of structs that each hold the next
+    /// twice would fill the memory.
+    pub budget: Cell<u32>,
 }
 
 pub(super) fn scalar(scalar: naga::Scalar) -> Scalar {
@@ -53,7 +58,9 @@ impl Types<'_> {
         })
     }
 
+    /// One of a struct's members, or nothing if there are more than anybody writes.
     fn member(&self, of: naga::Handle<naga::Type>, of_name: &str, member: &naga::StructMember) -> Option<Member> {
+        self.budget.set(self.budget.get().checked_sub(1)?);
         let name = member.name.clone().unwrap_or_default();
         let span = self.declarations.member(of_name, &name).unwrap_or_else(|| self.declared(of));
         Some(Member { offset: member.offset, ty: self.host(member.ty)?, name, span })

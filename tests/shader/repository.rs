@@ -23,6 +23,7 @@ fn shaders(folder: &Path, into: &mut Vec<PathBuf>) {
 fn all() -> Vec<PathBuf> {
     let mut out = Vec::new();
     shaders(&Path::new(env!("CARGO_MANIFEST_DIR")).join("shaders"), &mut out);
+    assert!(!out.is_empty(), "no shaders found");
     out
 }
 

@@ -1,5 +1,7 @@
 //! What naga finds wrong, said in the files that the person wrote.
 
+mod function;
+mod stage;
 mod unknown;
 mod validation;
 
@@ -8,14 +10,22 @@ pub(super) use validation::validation_error;
 use naga::front::wgsl::ParseError;
 
 use super::assemble::Assembled;
+use super::limits;
 use super::scan::Unpaired;
 use crate::diagnostic::{Code, Diagnostic, FileId, Span};
 
 /// What would make naga point at the wrong file: a comment or a bracket that an imported file
 /// leaves open swallows the files behind it.
 pub(super) fn broken_text(assembled: &Assembled) -> Option<Diagnostic> {
+    if let Some(why) = limits::too_many(&assembled.declarations) {
+        return Some(error(why).at(assembled.map.start(), "all told"));
+    }
     let units = assembled.map.files().zip(&assembled.texts).enumerate();
-    for (at, (file, (_, scan))) in units {
+    for (at, (file, (text, scan))) in units {
+        if let Some((token, why)) = limits::beyond(text, &scan.tokens) {
+            let span = Span::new(file, token.start, token.end);
+            return Some(finish(error(why).at(span, "the limit is reached here"), assembled));
+        }
         if let Some(start) = scan.open_comment {
             let span = Span::new(file, start, start + 2);
             return Some(finish(error("this comment is never closed").at(span, "opened here"), assembled));
@@ -40,14 +50,17 @@ fn unpaired_brace(file: FileId, unpaired: Unpaired) -> Diagnostic {
 
 /// naga's parser gives one error at a time.
 pub(super) fn parse_error(found: &ParseError, assembled: &Assembled) -> Diagnostic {
-    if let Some(diagnostic) = unclosed(found, assembled) {
+    if let Some(diagnostic) = unclosed(found, assembled).or_else(|| too_deep(found, assembled)) {
         return finish(diagnostic, assembled);
     }
     let message = sentence_of(found.message()).replace("found \"\"", "found the end of the file");
     let mut diagnostic = error(message);
-    for (at, (span, text)) in found.labels().enumerate() {
-        let Some(span) = assembled.map.span(span) else { continue };
-        let text = if text.is_empty() { "here".to_owned() } else { sentence_of(text) };
+    let labels = found.labels().filter_map(|(span, text)| Some((assembled.map.span(span)?, text)));
+    for (at, (span, text)) in labels.enumerate() {
+        let text = match text {
+            "" | "see msg" => "here".to_owned(),
+            text => sentence_of(text).replace("{AbstractFloat}", "number").replace("{AbstractInt}", "number"),
+        };
         diagnostic = match at {
             0 => diagnostic.at(missing_end(span, assembled).unwrap_or(span), text),
             _ => diagnostic.see(span, text),
@@ -56,8 +69,12 @@ pub(super) fn parse_error(found: &ParseError, assembled: &Assembled) -> Diagnost
     if diagnostic.labels.is_empty() {
         diagnostic = diagnostic.at(assembled.map.start(), "somewhere in this file");
     }
-    for note in found.notes().filter(|note| !note.contains("Naga")) {
+    // The failed conversions are all of what naga tried.
+    for note in found.notes().filter(|note| !note.contains("Naga") && !note.contains("couldn't be converted")) {
         diagnostic = diagnostic.hint(sentence_of(note));
+    }
+    if found.message().contains("convert") {
+        diagnostic = diagnostic.hint("write conversions out: `f32(x)`, `u32(x)`, `vec3<f32>(x)`");
     }
     diagnostic = unknown::suggest(diagnostic, found, assembled);
     finish(diagnostic, assembled)
@@ -70,6 +87,20 @@ fn unclosed(found: &ParseError, assembled: &Assembled) -> Option<Diagnostic> {
     let (_, scan) = &assembled.texts[assembled.named];
     let unpaired = scan.unpaired_brace().filter(|_| at_end)?;
     Some(unpaired_brace(assembled.map.start().file, unpaired))
+}
+
+/// naga tells of its limit without a place.
+fn too_deep(found: &ParseError, assembled: &Assembled) -> Option<Diagnostic> {
+    if found.message() != "internal WGSL front end error" || !found.notes().any(|note| note.contains("recursion")) {
+        return None;
+    }
+    let files = assembled.map.files().zip(&assembled.texts);
+    let deepest = files.filter_map(|(file, (_, scan))| Some((file, limits::deepest(&scan.tokens)?)));
+    let span = match deepest.max_by_key(|(_, (_, depth))| *depth) {
+        Some((file, (token, _))) => Span::new(file, token.start, token.end),
+        None => assembled.map.start(),
+    };
+    Some(error("this text nests deeper than the parser can follow").at(span, "the deepest bracket"))
 }
 
 /// If the error is the first word of a file and the file before it does not end as a declaration

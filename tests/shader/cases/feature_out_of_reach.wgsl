@@ -1,0 +1,3 @@
+enable wgpu_ray_query;
+var scene: acceleration_structure;
+@fragment fn main() {}

@@ -1,0 +1,2 @@
+#import "packed.wgsl"
+@fragment fn main() {}

@@ -1,0 +1,3 @@
+// Imported by cases.
+const two = 2.0;
+enable telepathy;

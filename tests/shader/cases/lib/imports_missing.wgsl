@@ -1,0 +1,2 @@
+// Imported by cases.
+#import "beyond_all_reach.wgsl"

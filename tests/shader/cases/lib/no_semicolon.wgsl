@@ -1,0 +1,3 @@
+// Imported by cases.
+const one = 1.0
+// Nothing follows.

@@ -1,0 +1,4 @@
+// Imported by cases.
+fn one() -> f32 {
+    if true { return 1.0;
+}

@@ -1,0 +1,2 @@
+#import "lib/imports_missing.wgsl"
+@fragment fn main() {}

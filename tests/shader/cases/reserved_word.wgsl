@@ -1,0 +1,2 @@
+var<uniform> target: f32;
+@fragment fn main() -> @location(0) f32 { return target; }

@@ -1,0 +1,2 @@
+fn one() -> f32 { return 1.0; } }
+@fragment fn main() -> @location(0) f32 { return one(); }

@@ -1,0 +1,1 @@
+@compute @workgroup_size(8, 0) fn main() {}

@@ -1,0 +1,1 @@
+@fragment fn main(@location(0) uv: vec2<f32>) -> @location(0) f32 { return uv.z; }
