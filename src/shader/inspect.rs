@@ -1,10 +1,11 @@
 //! Reflection: from a validated naga module to [`Module`].
 
+use std::borrow::Cow;
 use std::cell::Cell;
 use std::sync::Arc;
 
-use naga::valid::FunctionInfo;
-use naga::{Binding, BuiltIn, ShaderStage, TypeInner};
+use naga::valid::{FunctionInfo, ModuleInfo};
+use naga::{ArraySize, Binding, BuiltIn, ShaderStage, TypeInner};
 use twox_hash::XxHash3_128;
 
 use super::assemble::Assembled;
@@ -130,7 +131,7 @@ impl Inspector<'_> {
             discards: doings.discards,
             calls: doings.calls.into_iter().collect(),
             features: self.parsed.features,
-            workgroup_memory: self.workgroup_memory(info),
+            workgroup_memory: workgroup_memory(&self.parsed.module, info),
         }
     }
 
@@ -157,21 +158,6 @@ impl Inspector<'_> {
         let mut pairs: Vec<_> = pairs.filter_map(|key| Some((index(key.image)?, index(key.sampler)?))).collect();
         pairs.sort_unstable();
         pairs
-    }
-
-    /// As WebGPU counts it: each variable's size, rounded up to 16 bytes. A size that an override
-    /// decides counts with one element.
-    fn workgroup_memory(&self, info: &FunctionInfo) -> u32 {
-        let module = &self.parsed.module;
-        let mut layouter = naga::proc::Layouter::default();
-        let variables = module.global_variables.iter();
-        let mut used = variables
-            .filter(|(handle, v)| v.space == naga::AddressSpace::WorkGroup && !info[*handle].is_empty())
-            .peekable();
-        if used.peek().is_none() || layouter.update(module.to_ctx()).is_err() {
-            return 0;
-        }
-        used.map(|(_, variable)| layouter[variable.ty].size.next_multiple_of(16)).sum()
     }
 
     /// Collects the user-defined parts of an argument or result; whether the fragment's depth
@@ -212,25 +198,61 @@ struct Interface {
     frag_depth: bool,
 }
 
+/// As WebGPU counts it: each variable's size, rounded up to 16 bytes.
+fn workgroup_memory(module: &naga::Module, info: &FunctionInfo) -> u32 {
+    let mut layouter = naga::proc::Layouter::default();
+    let variables = module.global_variables.iter();
+    let mut used = variables
+        .filter(|(handle, v)| v.space == naga::AddressSpace::WorkGroup && !info[*handle].is_empty())
+        .peekable();
+    if used.peek().is_none() || layouter.update(module.to_ctx()).is_err() {
+        return 0;
+    }
+    let sizes = used.map(|(_, variable)| layouter[variable.ty].size.next_multiple_of(16));
+    sizes.fold(0, u32::saturating_add)
+}
+
+/// What overrides decide. `constants` are by [`Override::key`]; those that are not given take
+/// their defaults.
 impl Module {
-    /// The workgroup size of a compute entry point, with overrides set to `constants` (by
-    /// [`Override::key`]) or else to their defaults.
+    /// The workgroup size of a compute entry point.
     ///
     /// # Errors
     /// If a constant is unknown, does not fit its type, is missing without a default, or makes a
     /// size that is not positive.
     pub fn workgroup_size(&self, entry: &Entry, constants: &[(String, f64)]) -> Result<[u32; 3], String> {
-        let is_entry = |point: &&naga::EntryPoint| point.name == entry.name && point.stage == ShaderStage::Compute;
-        let decided = |points: &[naga::EntryPoint]| points.iter().find(is_entry).map(|p| p.workgroup_size);
-        let point = self.naga.entry_points.iter().find(is_entry);
-        if point.is_none_or(|p| p.workgroup_size_overrides.is_none()) {
+        let mut points = self.naga.entry_points.iter();
+        let is_decided = |point: &naga::EntryPoint| {
+            point.name == entry.name && point.stage == ShaderStage::Compute && point.workgroup_size_overrides.is_some()
+        };
+        if !points.any(is_decided) {
             return Ok(entry.workgroup_size);
         }
+        let (module, _) = self.resolved(entry, constants)?;
+        // Only the entry point that is asked for is left.
+        Ok(module.entry_points.first().map_or(entry.workgroup_size, |point| point.workgroup_size))
+    }
+
+    /// Bytes of `var<workgroup>` memory, as [`Entry::workgroup_memory`], of a compute entry point.
+    ///
+    /// # Errors
+    /// As [`Module::workgroup_size`].
+    pub fn workgroup_memory(&self, entry: &Entry, constants: &[(String, f64)]) -> Result<u32, String> {
+        let is_decided = |ty: &naga::Type| matches!(ty.inner, TypeInner::Array { size: ArraySize::Pending(_), .. });
+        if entry.workgroup_memory == 0 || !self.naga.types.iter().any(|(_, ty)| is_decided(ty)) {
+            return Ok(entry.workgroup_memory);
+        }
+        let (module, info) = self.resolved(entry, constants)?;
+        Ok(workgroup_memory(&module, info.get_entry_point(0)))
+    }
+
+    /// The module with nothing but a compute entry point and without overrides.
+    fn resolved(&self, entry: &Entry, constants: &[(String, f64)]) -> Result<Resolved<'_>, String> {
         let constants = constants.iter().cloned().collect();
         let selected = Some((ShaderStage::Compute, entry.name.as_str()));
-        let (module, _) =
-            naga::back::pipeline_constants::process_overrides(&self.naga, &self.info, selected, &constants)
-                .map_err(|error| super::message::sentence(&error))?;
-        Ok(decided(&module.entry_points).unwrap_or(entry.workgroup_size))
+        naga::back::pipeline_constants::process_overrides(&self.naga, &self.info, selected, &constants)
+            .map_err(|error| super::message::sentence(&error))
     }
 }
+
+type Resolved<'a> = (Cow<'a, naga::Module>, Cow<'a, ModuleInfo>);

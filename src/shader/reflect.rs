@@ -149,7 +149,8 @@ pub struct Entry {
     /// Features beyond WebGPU's defaults that its module needs: a device takes modules whole, so
     /// entry points of one module need the same.
     pub features: wgpu_types::Features,
-    /// Bytes of `var<workgroup>` memory as WebGPU counts them, each variable rounded up to 16.
+    /// Bytes of `var<workgroup>` memory as WebGPU counts them, each variable rounded up to 16; see
+    /// [`Module::workgroup_memory`] for sizes that overrides decide.
     pub workgroup_memory: u32,
 }
 

@@ -315,6 +315,22 @@ fn workgroup_memory_counts_what_the_entry_uses() {
 }
 
 #[test]
+fn workgroup_memory_follows_overrides() {
+    let m = module(
+        "override n: u32 = 100u; var<workgroup> a: array<f32, n * 2u>; var<workgroup> b: array<u32, 3>;
+         @compute @workgroup_size(64) fn both() { a[0] = 1.0; b[0] = 2u; }
+         @compute @workgroup_size(64) fn none() { }
+         @compute @workgroup_size(64) fn fixed() { b[0] = 2u; }",
+    );
+    let given = |n: f64| vec![("n".to_owned(), n)];
+    assert_eq!(m.workgroup_memory(entry(&m, "both"), &[]), Ok(800 + 16));
+    assert_eq!(m.workgroup_memory(entry(&m, "both"), &given(5.0)), Ok(48 + 16));
+    assert_eq!(m.workgroup_memory(entry(&m, "none"), &given(5.0)), Ok(0));
+    assert_eq!(m.workgroup_memory(entry(&m, "fixed"), &given(5.0)), Ok(16));
+    m.workgroup_memory(entry(&m, "both"), &given(-1.0)).unwrap_err();
+}
+
+#[test]
 fn features_are_the_fewest_that_suffice() {
     let of = |text: &str| module(text).entries[0].features;
     let main = |body: &str| format!("@compute @workgroup_size(64) fn main() {{ {body} }}");
