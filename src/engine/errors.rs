@@ -56,12 +56,14 @@ pub fn any_device_gone(diagnostics: &Diagnostics) -> bool {
 }
 
 pub(super) fn no_adapter(error: &wgpu::RequestAdapterError) -> Diagnostic {
-    let found = Diagnostic::error(Code::DEVICE, format!("{NO_ADAPTER}: {}", one_line(&error.to_string())));
-    if cfg!(target_os = "linux") {
-        found.hint("a software driver is enough: `apt-get install mesa-vulkan-drivers`")
+    let remedy = if cfg!(target_os = "linux") {
+        "a software driver is enough: `apt-get install mesa-vulkan-drivers`"
     } else {
-        found.hint("update the graphics driver")
-    }
+        "update the graphics driver"
+    };
+    Diagnostic::error(Code::DEVICE, NO_ADAPTER)
+        .hint(remedy)
+        .hint(format!("wgpu found: {}", one_line(&error.to_string())))
 }
 
 pub(super) fn no_device(adapter: &wgpu::Adapter, error: &wgpu::RequestDeviceError) -> Diagnostic {

@@ -5,6 +5,7 @@ mod compute;
 mod draw;
 mod harness;
 mod lifecycle;
+mod shipped;
 mod steps;
 mod support;
 mod transfer;
@@ -55,5 +56,7 @@ fn main() -> ExitCode {
         lifecycle::samplers_filter_or_not,
         lifecycle::a_lost_device_is_told_as_such,
         lifecycle::an_unknown_backend_is_told,
+        shipped::imai2016,
+        shipped::imai2014,
     ])
 }

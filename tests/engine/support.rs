@@ -272,3 +272,15 @@ pub fn texels(engine: &mut Engine, runner: &Runner, object: ObjectId, mip: u32, 
         .unwrap_or_else(|d| panic!("{d:#?}"))
         .to_rgba_f32()
 }
+
+pub trait ObjectRefExt {
+    /// The red of one texel of layer 0.
+    fn first_red(self, engine: &mut Engine, runner: &Runner, at: u32) -> f32;
+}
+
+impl ObjectRefExt for ObjectRef {
+    fn first_red(self, engine: &mut Engine, runner: &Runner, at: u32) -> f32 {
+        let data = runner.read_texture(engine, self, 0, Some(0)).unwrap_or_else(|d| panic!("{d:#?}"));
+        data.to_rgba_f32()[at as usize][0]
+    }
+}
