@@ -143,14 +143,14 @@ pub fn state_goes_on_unless_its_key_changes(engine: &mut Engine) {
     let mut runner = prepare(engine, plan.clone());
     step(engine, &mut runner, 0.0, 3);
     let mut runner = engine.prepare(plan.clone(), Some(runner)).unwrap();
-    assert_eq!(runner.build_report().state_kept["sim"], true);
+    assert!(runner.build_report().state_kept["sim"]);
     step(engine, &mut runner, 0.0, 1);
     assert_eq!(floats(engine, &runner, out)[..3], [10.0, 2.5, 4.0]);
 
     let mut other = plan;
     other.steps[0].key = 2;
     let mut runner = engine.prepare(other, Some(runner)).unwrap();
-    assert_eq!(runner.build_report().state_kept["sim"], false);
+    assert!(!runner.build_report().state_kept["sim"]);
     step(engine, &mut runner, 0.0, 1);
     assert_eq!(floats(engine, &runner, out)[..3], [1.0, 0.25, 1.0]);
     runner.reset_state(engine).unwrap();

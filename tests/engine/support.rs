@@ -244,7 +244,7 @@ pub fn prepare(engine: &mut Engine, plan: Plan) -> Runner {
 }
 
 pub fn refused(engine: &mut Engine, plan: Plan, previous: Option<Runner>) -> Box<Refused> {
-    engine.prepare(plan, previous).err().expect("the plan is wrong")
+    engine.prepare(plan, previous).expect_err("the plan is wrong")
 }
 
 pub fn nothing_live(_: &str, _: Option<&meniscus::engine::StepInfo>) -> Option<Value> {
