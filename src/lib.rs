@@ -6,13 +6,16 @@
 //! and including the plan works without a GPU.
 
 pub mod check;
+pub mod cli;
 pub mod diagnostic;
 pub mod engine;
 pub mod files;
 pub mod format;
 pub mod graph;
+pub mod host;
 pub mod plan;
 pub mod program;
+pub mod reload;
 pub mod scene;
 pub mod shader;
 pub mod syntax;

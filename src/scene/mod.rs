@@ -1,3 +1,16 @@
 //! What a scene brings: cameras, lights, particles, images, and their file formats.
+//!
+//! [`read()`] makes a [`Scene`] from RON text. Nothing here knows a device: images become texels,
+//! particles become rows of bytes as a shader's type wants them, and the host hands both over.
 
+pub mod camera;
+pub mod convert;
+pub mod framing;
+pub mod image;
+mod model;
 pub mod particles;
+mod read;
+
+pub use camera::{Camera, Light};
+pub use model::{Item, ParticleSource, Scene, find};
+pub use read::{DEFAULT_FOV_DEGREES, read};

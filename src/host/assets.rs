@@ -1,0 +1,171 @@
+//! Particle files and pictures that a scene names, read once for as long as their bytes stay.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::thread::{self, JoinHandle};
+
+use twox_hash::XxHash3_128;
+
+use crate::diagnostic::{Code, Diagnostic, Diagnostics, Span};
+use crate::scene::image::Image;
+use crate::scene::particles::{self, ParticleSet};
+
+/// Particles with a radius.
+#[derive(Debug)]
+pub struct Particles {
+    pub set: ParticleSet,
+    /// Metres.
+    pub radius_m: f64,
+}
+
+/// A file's content, decoded.
+#[derive(Clone, Debug)]
+pub enum Asset {
+    Particles(Arc<ParticleSet>),
+    Image(Arc<Image>),
+}
+
+/// What was decoded before, by path, with the hash of the bytes it was made from.
+#[derive(Debug, Default)]
+pub struct Cache {
+    assets: BTreeMap<PathBuf, (u128, Asset, Diagnostics)>,
+}
+
+/// What a file is to be decoded as.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum AssetKind {
+    Particles,
+    Image,
+}
+
+/// A file that is being decoded, on another thread unless it was decoded before.
+#[derive(Debug)]
+pub struct Pending {
+    path: PathBuf,
+    hash: u128,
+    at: Option<Span>,
+    work: Work,
+}
+
+#[derive(Debug)]
+enum Work {
+    Done(Asset, Diagnostics),
+    Running(JoinHandle<Result<(Asset, Diagnostics), Diagnostic>>),
+}
+
+impl Cache {
+    /// Begins to decode a file's bytes. Messages point at `at`, where a scene names the file.
+    pub fn begin(&self, path: &Path, bytes: Arc<[u8]>, kind: AssetKind, at: Option<Span>) -> Pending {
+        let hash = XxHash3_128::oneshot(&bytes);
+        let work = match self.assets.get(path) {
+            Some((known, asset, found)) if *known == hash && asset.kind() == kind => {
+                Work::Done(asset.clone(), found.clone())
+            }
+            _ => {
+                let path = path.to_owned();
+                Work::Running(thread::spawn(move || match kind {
+                    AssetKind::Particles => decode_particles(&path, &bytes),
+                    AssetKind::Image => decode_image(&path, &bytes),
+                }))
+            }
+        };
+        Pending { path: path.to_owned(), hash, at, work }
+    }
+
+    /// Waits for a file and keeps it.
+    pub fn finish(&mut self, pending: Pending, diagnostics: &mut Diagnostics) -> Option<Asset> {
+        let Pending { path, hash, at, work } = pending;
+        let decoded = match work {
+            Work::Done(asset, found) => Ok((asset, found)),
+            Work::Running(thread) => thread.join().unwrap_or_else(|_| {
+                // A reader that panics is a fault of this program, and no reason to end a watch.
+                Err(Diagnostic::error(Code::ASSET, format!("`{}`: the reader failed", path.display())))
+            }),
+        };
+        let label = |found: Diagnostic| match at {
+            Some(span) => found.see(span, "named here"),
+            None => found,
+        };
+        match decoded {
+            Ok((asset, found)) => {
+                found.iter().cloned().for_each(|d| diagnostics.push(label(d)));
+                self.assets.insert(path, (hash, asset.clone(), found));
+                Some(asset)
+            }
+            Err(error) => {
+                diagnostics.push(label(error));
+                None
+            }
+        }
+    }
+}
+
+impl Asset {
+    fn kind(&self) -> AssetKind {
+        match self {
+            Asset::Particles(_) => AssetKind::Particles,
+            Asset::Image(_) => AssetKind::Image,
+        }
+    }
+}
+
+fn decode_particles(path: &Path, bytes: &[u8]) -> Result<(Asset, Diagnostics), Diagnostic> {
+    let set = particles::read(path, bytes).map_err(|error| {
+        let failed = Diagnostic::error(Code::ASSET, format!("`{}`: {error}", path.display()));
+        error.hint.iter().fold(failed, Diagnostic::hint)
+    })?;
+    let mut found = Diagnostics::new();
+    for note in &set.notes {
+        found.push(Diagnostic::note(Code::ASSET_NOTE, format!("`{}`: {note}", path.display())));
+    }
+    if set.count == 0 {
+        let empty = format!("`{}` has no particles: the picture will show none", path.display());
+        found.push(Diagnostic::warning(Code::ASSET_NOTE, empty));
+    }
+    Ok((Asset::Particles(Arc::new(set)), found))
+}
+
+fn decode_image(path: &Path, bytes: &[u8]) -> Result<(Asset, Diagnostics), Diagnostic> {
+    let image = crate::scene::image::read(bytes).map_err(|error| {
+        let failed = Diagnostic::error(Code::ASSET, format!("`{}`: {}", path.display(), error.message));
+        error.hint.iter().fold(failed, Diagnostic::hint)
+    })?;
+    let mut found = Diagnostics::new();
+    if image.clipped > 0 {
+        let clipped = format!("`{}`: {} texels are brighter than 65504 and were clipped", path.display(), image.clipped);
+        found.push(Diagnostic::note(Code::ASSET_NOTE, clipped));
+    }
+    Ok((Asset::Image(Arc::new(image)), found))
+}
+
+/// The radius of a set: what somebody said, else the file's, else an estimate that is told.
+///
+/// # Errors
+/// If nobody says and the spacing does not tell.
+pub fn radius_m(
+    path: &Path,
+    set: &ParticleSet,
+    said: Option<f64>,
+    diagnostics: &mut Diagnostics,
+) -> Result<f64, Diagnostic> {
+    if let Some(radius) = said.or(set.radius.map(f64::from)) {
+        return Ok(radius);
+    }
+    if set.count == 0 {
+        // Nothing has this radius; sizes that are made of it must not be zero.
+        return Ok(0.025);
+    }
+    match particles::estimate_radius(&set.positions()) {
+        Some(radius) => {
+            let said = format!("`{}` gives no radius: {radius:.4} m is estimated from the spacing", path.display());
+            diagnostics.push(Diagnostic::note(Code::ASSET_NOTE, said).hint("`--radius METRES` says another"));
+            Ok(f64::from(radius))
+        }
+        None => {
+            let why = if set.count == 1 { "there is one particle only" } else { "all particles are in one place" };
+            let message = format!("`{}` gives no radius, and the spacing does not tell: {why}", path.display());
+            Err(Diagnostic::error(Code::ASSET, message).hint("give it with `--radius METRES`, or `radius:` in a scene"))
+        }
+    }
+}

@@ -1,0 +1,160 @@
+//! A set of files, also such as are not there yet, and word of their changes.
+//!
+//! Folders are watched rather than files, so that saving by renaming over a file, deleting it and
+//! putting it back are all seen. Reading a file oneself is no change.
+
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
+use std::time::{Duration, Instant, SystemTime};
+
+use notify::event::{EventKind, ModifyKind};
+use notify::{RecommendedWatcher, RecursiveMode, Watcher as _};
+
+use crate::files::{LIBRARY, normalize};
+
+/// Silence after an event that ends a burst: editors write a file in several strokes.
+const QUIET: Duration = Duration::from_millis(15);
+/// A burst that does not end is a change all the same.
+const LONGEST_BURST: Duration = Duration::from_millis(200);
+
+type Event = notify::Result<notify::Event>;
+
+/// Watches a set of files.
+#[derive(Debug)]
+pub struct Watch {
+    watcher: RecommendedWatcher,
+    events: Receiver<(Instant, Event)>,
+    /// Absolute paths.
+    files: BTreeSet<PathBuf>,
+    folders: BTreeSet<PathBuf>,
+    /// Files that changed while they were not watched yet.
+    missed: BTreeSet<PathBuf>,
+}
+
+/// What changed in a burst of events.
+#[derive(Clone, Debug)]
+pub struct Change {
+    /// Absolute paths of files of the set, sorted.
+    pub files: Vec<PathBuf>,
+    /// When the first event of the burst came.
+    pub first: Instant,
+    /// From the first event, or from the save where the file tells it, to the end of the burst.
+    pub noticing: Duration,
+}
+
+impl Watch {
+    /// # Errors
+    /// If the system has no more room for watchers.
+    pub fn new() -> notify::Result<Self> {
+        let (sender, events) = channel();
+        // A receiver that is gone wants no events.
+        let watcher = notify::recommended_watcher(move |event| _ = sender.send((Instant::now(), event)))?;
+        let (files, folders, missed) = <(BTreeSet<_>, BTreeSet<_>, BTreeSet<_>)>::default();
+        Ok(Self { watcher, events, files, folders, missed })
+    }
+
+    /// Watches exactly `paths` from now on. Files that were not watched before and that were saved
+    /// after `read_since` count as changed: they may have been read before.
+    ///
+    /// # Errors
+    /// If a folder cannot be watched; the set stays in part as it was.
+    pub fn set<'a>(
+        &mut self,
+        paths: impl IntoIterator<Item = &'a Path>,
+        read_since: SystemTime,
+    ) -> notify::Result<()> {
+        let mut files = BTreeSet::new();
+        for path in paths.into_iter().filter(|path| !path.starts_with(LIBRARY)) {
+            files.insert(absolute(path));
+            // A link's target is saved elsewhere.
+            files.extend(std::fs::canonicalize(path).ok());
+        }
+        let folders: BTreeSet<PathBuf> = files.iter().filter_map(|file| nearest_folder(file)).collect();
+        for folder in folders.difference(&self.folders) {
+            self.watcher.watch(folder, RecursiveMode::NonRecursive)?;
+        }
+        for folder in self.folders.difference(&folders) {
+            // It may have gone by itself.
+            _ = self.watcher.unwatch(folder);
+        }
+        let saved_since = |file: &&PathBuf| saved(file).is_some_and(|saved| saved >= read_since);
+        self.missed = files.difference(&self.files).filter(saved_since).cloned().collect();
+        (self.files, self.folders) = (files, folders);
+        Ok(())
+    }
+
+    /// Waits for a change; `None` if there is none within `patience`.
+    ///
+    /// # Errors
+    /// If the system stops telling of changes.
+    pub fn next(&mut self, patience: Duration) -> notify::Result<Option<Change>> {
+        let deadline = Instant::now() + patience;
+        let mut changed = std::mem::take(&mut self.missed);
+        let mut first = (!changed.is_empty()).then(Instant::now);
+        let mut last = first;
+        loop {
+            let until = match (first, last) {
+                (Some(first), Some(last)) => (last + QUIET).min(first + LONGEST_BURST),
+                _ => deadline,
+            };
+            match self.events.recv_timeout(until.saturating_duration_since(Instant::now())) {
+                Ok((at, event)) => {
+                    let found = self.relevant(&event?);
+                    if !found.is_empty() {
+                        first.get_or_insert(at);
+                        last = Some(at);
+                        changed.extend(found);
+                    }
+                }
+                Err(RecvTimeoutError::Timeout) => break,
+                Err(RecvTimeoutError::Disconnected) => {
+                    return Err(notify::Error::generic("the system no longer tells of changes"));
+                }
+            }
+        }
+        Ok(first.map(|first| Change { noticing: noticing(&changed, first), files: changed.into_iter().collect(), first }))
+    }
+
+    /// Which files of the set an event may concern: those it names, and all below a folder that
+    /// it names.
+    fn relevant(&self, event: &notify::Event) -> Vec<PathBuf> {
+        let changes = match event.kind {
+            EventKind::Create(_) | EventKind::Remove(_) => true,
+            EventKind::Modify(ModifyKind::Metadata(_)) => false,
+            EventKind::Modify(_) => true,
+            // The system lost events: anything may have changed.
+            _ if event.need_rescan() => return self.files.iter().cloned().collect(),
+            _ => false,
+        };
+        let concerned = |file: &&PathBuf| changes && event.paths.iter().any(|path| file.starts_with(path));
+        // A watched folder reports itself when something in it is touched.
+        let itself = event.paths.iter().all(|path| self.folders.contains(path)) && path_is_there(event);
+        if itself { Vec::new() } else { self.files.iter().filter(concerned).cloned().collect() }
+    }
+}
+
+fn path_is_there(event: &notify::Event) -> bool {
+    !matches!(event.kind, EventKind::Remove(_) | EventKind::Create(_) | EventKind::Modify(ModifyKind::Name(_)))
+}
+
+fn absolute(path: &Path) -> PathBuf {
+    normalize(&std::path::absolute(path).unwrap_or_else(|_| path.to_owned()))
+}
+
+/// The folder to watch for a file: its own, or the nearest above it that is there.
+fn nearest_folder(file: &Path) -> Option<PathBuf> {
+    file.ancestors().skip(1).find(|folder| folder.is_dir()).map(Path::to_owned)
+}
+
+fn saved(file: &Path) -> Option<SystemTime> {
+    std::fs::metadata(file).and_then(|data| data.modified()).ok()
+}
+
+fn noticing(files: &BTreeSet<PathBuf>, first: Instant) -> Duration {
+    let since_event = first.elapsed();
+    let now = SystemTime::now();
+    let since_save = files.iter().filter_map(|file| now.duration_since(saved(file)?).ok()).max();
+    // A file that was moved into place may have been saved long ago.
+    since_save.filter(|age| *age < since_event + Duration::from_secs(1)).unwrap_or(since_event).max(since_event)
+}

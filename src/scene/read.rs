@@ -1,0 +1,266 @@
+//! Scene files from RON. All mistakes of a file are reported at once; what could be read stands.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use glam::DVec3;
+
+use super::camera::{Camera, Light};
+use super::model::{Item, ParticleSource, Scene};
+use crate::diagnostic::{Code, Diagnostic, Diagnostics, Sources, Span};
+use crate::graph::value::Value;
+use crate::syntax::{self, Body, Decoder, Fields, Kind, Node, Sp, Tagged};
+
+const FIELDS: &[&str] = &[
+    "about",
+    "graph",
+    "camera",
+    "lights",
+    "environment",
+    "particles",
+    "tables",
+    "textures",
+    "params",
+    "present",
+    "size",
+];
+
+/// Vertical, in degrees, where a scene's camera does not say.
+pub const DEFAULT_FOV_DEGREES: f64 = 40.0;
+const LARGEST_SIDE: i64 = 32_768;
+
+/// Reads the bytes of a scene file and registers them under `path`. `None` if nothing of it could
+/// be made out; with errors the scene holds what was sound.
+pub fn read(path: &Path, bytes: &[u8], sources: &mut Sources, diagnostics: &mut Diagnostics) -> Option<Scene> {
+    let file = match syntax::add_bytes(sources, path, bytes) {
+        Ok(file) => file,
+        Err(unreadable) => {
+            diagnostics.push(unreadable);
+            return None;
+        }
+    };
+    let node = syntax::parse(sources, file, diagnostics)?;
+    let mut reader = Reader { decoder: Decoder { diagnostics } };
+    let tagged = reader.root(&node)?;
+    let fields = reader.decoder.body_fields(tagged, "`Scene`", FIELDS)?;
+    let mut textures = reader.items(&fields, "textures", Reader::file_name);
+    if let Some((name, node)) = fields.entry("environment")
+        && let Some(file) = reader.file_name(node, "`environment`")
+    {
+        textures.push(Item { name: name.clone(), value: file, span: node.span });
+    }
+    let scene = Scene {
+        path: path.to_owned(),
+        file,
+        span: tagged.head,
+        about: fields.get("about").and_then(|n| reader.decoder.text(n, "`about`")).map(|s| s.value),
+        graph: fields.get("graph").and_then(|n| reader.file_name(n, "`graph`")),
+        camera: fields.get("camera").and_then(|n| reader.camera(n)),
+        lights: reader.items(&fields, "lights", Reader::light),
+        particles: reader.items(&fields, "particles", Reader::particles),
+        tables: reader.items(&fields, "tables", Reader::table),
+        params: reader.items(&fields, "params", Reader::value),
+        present: reader.items(&fields, "present", Reader::value),
+        size: fields.get("size").and_then(|n| reader.size(n)),
+        textures,
+    };
+    reader.same_names(&scene);
+    Some(scene)
+}
+
+struct Reader<'d> {
+    decoder: Decoder<'d>,
+}
+
+impl Reader<'_> {
+    fn root<'n>(&mut self, node: &'n Node) -> Option<&'n Tagged> {
+        let found = node.as_tagged().filter(|t| t.name.as_ref().is_none_or(|name| name.value == "Scene"));
+        if found.is_none() {
+            self.decoder.wrong(node, "a scene file", "`Scene(...)`");
+        }
+        found
+    }
+
+    /// The entries of a field that is a map of names; each is read from its own value, so that one
+    /// bad entry hides no other.
+    fn items<T>(
+        &mut self,
+        fields: &Fields<'_>,
+        field: &str,
+        read: fn(&mut Self, &Node, &str) -> Option<T>,
+    ) -> Vec<Item<T>> {
+        let what = format!("`{field}`");
+        let entries = fields.get(field).and_then(|node| self.decoder.map(node, &what)).unwrap_or_default();
+        let mut items = Vec::with_capacity(entries.len());
+        for (name, node) in entries {
+            let what = format!("`{}` of {what}", name.value);
+            if let Some(value) = read(self, node, &what) {
+                items.push(Item { name, value, span: node.span });
+            }
+        }
+        items
+    }
+
+    fn camera(&mut self, node: &Node) -> Option<Sp<Camera>> {
+        let fields = self.decoder.fields(node, "`Camera`", &["eye", "target", "up", "fov", "near"])?;
+        self.word(node, "Camera", "`camera`");
+        let eye = fields.require(&mut self.decoder, "eye").and_then(|n| self.decoder.floats::<3>(n, "`eye`"));
+        let target = fields.require(&mut self.decoder, "target").and_then(|n| self.decoder.floats::<3>(n, "`target`"));
+        let up = match fields.get("up") {
+            Some(n) => self.decoder.floats::<3>(n, "`up`"),
+            None => Some(DVec3::Y.to_array()),
+        };
+        let fov_degrees = match fields.get("fov") {
+            Some(n) => self.decoder.float(n, "`fov`"),
+            None => Some(DEFAULT_FOV_DEGREES),
+        };
+        let near_m = fields.get("near").and_then(|n| self.decoder.float(n, "`near`"));
+        let camera = Camera {
+            eye: DVec3::from_array(eye?),
+            target: DVec3::from_array(target?),
+            up: DVec3::from_array(up?),
+            fov_degrees: fov_degrees?,
+            near_m,
+        };
+        self.sound(camera.fault(), fields.head)?;
+        Some(Sp { value: camera, span: fields.head })
+    }
+
+    fn light(&mut self, node: &Node, what: &str) -> Option<Light> {
+        let fields = self.decoder.fields(node, "`Light`", &["direction", "color", "intensity"])?;
+        self.word(node, "Light", what);
+        let direction = fields.require(&mut self.decoder, "direction");
+        let direction = direction.and_then(|n| self.decoder.floats::<3>(n, "`direction`"));
+        let color = match fields.get("color") {
+            Some(n) => self.decoder.floats::<3>(n, "`color`"),
+            None => Some([1.0; 3]),
+        };
+        let intensity = match fields.get("intensity") {
+            Some(n) => self.decoder.float(n, "`intensity`"),
+            None => Some(1.0),
+        };
+        let light = Light {
+            direction: DVec3::from_array(direction?),
+            color: DVec3::from_array(color?),
+            intensity: intensity?,
+        };
+        self.sound(light.fault(), fields.head)?;
+        Some(light)
+    }
+
+    /// `"file"` or `(file: "file", radius: 0.025)`.
+    fn particles(&mut self, node: &Node, what: &str) -> Option<ParticleSource> {
+        if node.as_str().is_some() {
+            return Some(ParticleSource { file: self.file_name(node, what)?, radius_m: None });
+        }
+        let fields = self.decoder.fields(node, "`Particles`", &["file", "radius"])?;
+        self.word(node, "Particles", what);
+        let file = fields.require(&mut self.decoder, "file").and_then(|n| self.file_name(n, "`file`"));
+        let radius_m = match fields.get("radius") {
+            Some(n) => Some(Sp { value: self.decoder.float(n, "`radius`")?, span: n.span }),
+            None => None,
+        };
+        if let Some(radius) = radius_m.as_ref().filter(|r| r.value <= 0.0) {
+            self.sound(Some("a radius must be above 0"), radius.span)?;
+        }
+        Some(ParticleSource { file: file?, radius_m })
+    }
+
+    /// Rows, each `(name: value, ...)` or `{"name": value, ...}`.
+    fn table(&mut self, node: &Node, what: &str) -> Option<Vec<BTreeMap<String, Value>>> {
+        let rows = self.decoder.list(node, what)?;
+        let read: Vec<_> = rows.iter().map(|row| self.row(row, what)).collect();
+        read.into_iter().collect()
+    }
+
+    fn row(&mut self, node: &Node, what: &str) -> Option<BTreeMap<String, Value>> {
+        let entries: Vec<(Sp<String>, &Node)> = match &node.kind {
+            Kind::Map(_) => self.decoder.map(node, what)?,
+            Kind::Tagged(Tagged { name: None, body: Body::Fields(fields), .. }) => {
+                fields.iter().map(|(name, value)| (name.clone(), value)).collect()
+            }
+            _ => {
+                self.decoder.wrong(node, what, "a row of named values in brackets");
+                return None;
+            }
+        };
+        let mut row = BTreeMap::new();
+        let mut good = true;
+        for (name, node) in entries {
+            match self.value(node, &format!("`{}` of {what}", name.value)) {
+                Some(value) => _ = row.insert(name.value, value),
+                None => good = false,
+            }
+        }
+        good.then_some(row)
+    }
+
+    /// A number, a truth value, a word (also in quotes) or a tuple of 2 to 4 numbers.
+    fn value(&mut self, node: &Node, what: &str) -> Option<Value> {
+        match &node.kind {
+            Kind::Bool(b) => Some(Value::Bool(*b)),
+            Kind::Int(i) => Some(Value::Int(*i)),
+            Kind::Float(_) => self.decoder.float(node, what).map(Value::Float),
+            Kind::Str(s) => Some(Value::Word(s.value.clone())),
+            Kind::Tagged(Tagged { name: Some(word), body: Body::Unit, .. }) => Some(Value::Word(word.value.clone())),
+            Kind::Tagged(Tagged { name: None, body: Body::Items(_), .. }) => {
+                let items = self.decoder.items(node, what, "a tuple of 2 to 4 numbers", 2..=4)?;
+                let numbers: Vec<_> = items.iter().map(|item| self.decoder.float(item, what)).collect();
+                numbers.into_iter().collect::<Option<Vec<f64>>>().map(Value::vec)
+            }
+            _ => {
+                self.decoder.wrong(node, what, "a number, a truth value, a word or a tuple of numbers");
+                None
+            }
+        }
+    }
+
+    fn file_name(&mut self, node: &Node, what: &str) -> Option<Sp<String>> {
+        let text = self.decoder.text(node, what)?;
+        if text.value.trim().is_empty() {
+            self.decoder.wrong(node, what, "the name of a file");
+            return None;
+        }
+        Some(text)
+    }
+
+    fn size(&mut self, node: &Node) -> Option<[u32; 2]> {
+        let items = self.decoder.items(node, "`size`", "(width, height) in pixels", 2..=2)?;
+        let [width, height] = items else { return None };
+        let width = self.decoder.int_within(width, "`size`", 1, LARGEST_SIDE);
+        let height = self.decoder.int_within(height, "`size`", 1, LARGEST_SIDE);
+        Some([u32::try_from(width?).ok()?, u32::try_from(height?).ok()?])
+    }
+
+    /// The word before a bracket may be left out, but must not be another.
+    fn word(&mut self, node: &Node, expected: &str, what: &str) {
+        let word = node.as_tagged().and_then(|t| t.name.as_ref());
+        if let Some(word) = word.filter(|word| word.value != expected) {
+            self.decoder.unknown_word(word, what, &[expected]);
+        }
+    }
+
+    fn sound(&mut self, fault: Option<&'static str>, span: Span) -> Option<()> {
+        let Some(fault) = fault else { return Some(()) };
+        self.decoder.push(Diagnostic::error(Code::OUT_OF_RANGE, fault).at(span, "here"));
+        None
+    }
+
+    /// Inputs take items by name, whatever their kind: a name that two items bear is a mistake.
+    fn same_names(&mut self, scene: &Scene) {
+        let items = scene.items();
+        for (at, (kind, name)) in items.iter().enumerate() {
+            if let Some((other, first)) = items[..at].iter().find(|(_, n)| n.value == name.value) {
+                let message = format!("`{}` names both {} and {}", name.value, article(other), article(kind));
+                let twice = Diagnostic::error(Code::DUPLICATE, message)
+                    .at(name.span, "the second time")
+                    .see(first.span, "the first time");
+                self.decoder.push(twice);
+            }
+        }
+    }
+}
+
+fn article(kind: &str) -> String {
+    if kind == "particles" { kind.to_owned() } else { format!("a {kind}") }
+}
