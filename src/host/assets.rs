@@ -14,7 +14,7 @@ use crate::scene::particles::{self, ParticleSet};
 /// Particles with a radius.
 #[derive(Debug)]
 pub struct Particles {
-    pub set: ParticleSet,
+    pub set: Arc<ParticleSet>,
     /// Metres.
     pub radius_m: f64,
 }
@@ -22,20 +22,33 @@ pub struct Particles {
 /// A file's content, decoded.
 #[derive(Clone, Debug)]
 pub enum Asset {
-    Particles(Arc<ParticleSet>),
+    /// With a radius in metres that the spacing tells, if that was asked for and it tells one.
+    Particles(Arc<ParticleSet>, Option<f32>),
     Image(Arc<Image>),
 }
 
 /// What was decoded before, by path, with the hash of the bytes it was made from.
 #[derive(Debug, Default)]
 pub struct Cache {
-    assets: BTreeMap<PathBuf, (u128, Asset, Diagnostics)>,
+    assets: BTreeMap<PathBuf, Decoded>,
+    sized: BTreeMap<PathBuf, Arc<Particles>>,
+}
+
+#[derive(Debug)]
+struct Decoded {
+    hash: u128,
+    kind: AssetKind,
+    asset: Asset,
+    found: Diagnostics,
 }
 
 /// What a file is to be decoded as.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum AssetKind {
-    Particles,
+    Particles {
+        /// Whether a radius is looked for where the file has none.
+        estimate: bool,
+    },
     Image,
 }
 
@@ -44,6 +57,7 @@ pub enum AssetKind {
 pub struct Pending {
     path: PathBuf,
     hash: u128,
+    kind: AssetKind,
     at: Option<Span>,
     work: Work,
 }
@@ -59,23 +73,23 @@ impl Cache {
     pub fn begin(&self, path: &Path, bytes: Arc<[u8]>, kind: AssetKind, at: Option<Span>) -> Pending {
         let hash = XxHash3_128::oneshot(&bytes);
         let work = match self.assets.get(path) {
-            Some((known, asset, found)) if *known == hash && asset.kind() == kind => {
-                Work::Done(asset.clone(), found.clone())
+            Some(known) if known.hash == hash && known.kind == kind => {
+                Work::Done(known.asset.clone(), known.found.clone())
             }
             _ => {
                 let path = path.to_owned();
                 Work::Running(thread::spawn(move || match kind {
-                    AssetKind::Particles => decode_particles(&path, &bytes),
+                    AssetKind::Particles { estimate } => decode_particles(&path, &bytes, estimate),
                     AssetKind::Image => decode_image(&path, &bytes),
                 }))
             }
         };
-        Pending { path: path.to_owned(), hash, at, work }
+        Pending { path: path.to_owned(), hash, kind, at, work }
     }
 
     /// Waits for a file and keeps it.
     pub fn finish(&mut self, pending: Pending, diagnostics: &mut Diagnostics) -> Option<Asset> {
-        let Pending { path, hash, at, work } = pending;
+        let Pending { path, hash, kind, at, work } = pending;
         let decoded = match work {
             Work::Done(asset, found) => Ok((asset, found)),
             Work::Running(thread) => thread.join().unwrap_or_else(|_| {
@@ -90,7 +104,7 @@ impl Cache {
         match decoded {
             Ok((asset, found)) => {
                 found.iter().cloned().for_each(|d| diagnostics.push(label(d)));
-                self.assets.insert(path, (hash, asset.clone(), found));
+                self.assets.insert(path, Decoded { hash, kind, asset: asset.clone(), found });
                 Some(asset)
             }
             Err(error) => {
@@ -99,18 +113,21 @@ impl Cache {
             }
         }
     }
-}
 
-impl Asset {
-    fn kind(&self) -> AssetKind {
-        match self {
-            Asset::Particles(_) => AssetKind::Particles,
-            Asset::Image(_) => AssetKind::Image,
+    /// A set with its radius; the same as before if neither changed.
+    pub fn sized(&mut self, path: &Path, set: Arc<ParticleSet>, radius_m: f64) -> Arc<Particles> {
+        match self.sized.get(path) {
+            Some(known) if Arc::ptr_eq(&known.set, &set) && known.radius_m == radius_m => Arc::clone(known),
+            _ => {
+                let sized = Arc::new(Particles { set, radius_m });
+                self.sized.insert(path.to_owned(), Arc::clone(&sized));
+                sized
+            }
         }
     }
 }
 
-fn decode_particles(path: &Path, bytes: &[u8]) -> Result<(Asset, Diagnostics), Diagnostic> {
+fn decode_particles(path: &Path, bytes: &[u8], estimate: bool) -> Result<(Asset, Diagnostics), Diagnostic> {
     let set = particles::read(path, bytes).map_err(|error| {
         let failed = Diagnostic::error(Code::ASSET, format!("`{}`: {error}", path.display()));
         error.hint.iter().fold(failed, Diagnostic::hint)
@@ -123,7 +140,9 @@ fn decode_particles(path: &Path, bytes: &[u8]) -> Result<(Asset, Diagnostics), D
         let empty = format!("`{}` has no particles: the picture will show none", path.display());
         found.push(Diagnostic::warning(Code::ASSET_NOTE, empty));
     }
-    Ok((Asset::Particles(Arc::new(set)), found))
+    let wanted = estimate && set.radius.is_none() && set.count > 1;
+    let estimated = if wanted { particles::estimate_radius(&set.positions()) } else { None };
+    Ok((Asset::Particles(Arc::new(set), estimated), found))
 }
 
 fn decode_image(path: &Path, bytes: &[u8]) -> Result<(Asset, Diagnostics), Diagnostic> {
@@ -146,6 +165,7 @@ fn decode_image(path: &Path, bytes: &[u8]) -> Result<(Asset, Diagnostics), Diagn
 pub fn radius_m(
     path: &Path,
     set: &ParticleSet,
+    estimated: Option<f32>,
     said: Option<f64>,
     diagnostics: &mut Diagnostics,
 ) -> Result<f64, Diagnostic> {
@@ -156,7 +176,7 @@ pub fn radius_m(
         // Nothing has this radius; sizes that are made of it must not be zero.
         return Ok(0.025);
     }
-    match particles::estimate_radius(&set.positions()) {
+    match estimated {
         Some(radius) => {
             let said = format!("`{}` gives no radius: {radius:.4} m is estimated from the spacing", path.display());
             diagnostics.push(Diagnostic::note(Code::ASSET_NOTE, said).hint("`--radius METRES` says another"));

@@ -1,3 +1,21 @@
+//! The host of graphs: it loads what a scene names, plans the scene's graph and the graph that
+//! turns light into a picture, has the engine run both, and hands out pictures and contents.
+//!
+//! [`load`] reads, without a device; a [`Session`] builds what was loaded on a device and draws
+//! it. A load or a build that fails leaves a session as it was.
+
+mod assets;
+mod build;
+mod draw;
 pub mod dump;
+mod inputs;
+mod load;
+pub mod params;
 pub mod picture;
-pub mod texels;
+mod source;
+
+pub use assets::{Cache, Particles};
+pub use build::{Built, Session};
+pub use draw::{Drawn, Moment};
+pub use inputs::Input;
+pub use load::{Content, Job, Loaded, load};

@@ -7,8 +7,18 @@ use half::f16;
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use image::{ExtendedColorType, ImageBuffer, ImageEncoder as _, ImageFormat, Rgba};
 
-use super::texels::Texels;
 use crate::scene::image::encode_srgb;
+
+/// Texels as four numbers each, linear.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Texels {
+    pub width: u32,
+    /// Of all layers together, one below the other.
+    pub height: u32,
+    pub rgba: Vec<[f32; 4]>,
+    /// Of the format that they came from: what it lacks is 0, alpha 1.
+    pub channels: u32,
+}
 
 /// What a picture's file name asks for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -89,10 +99,7 @@ fn png(size: [u32; 2], pixels: &[u8], color: ExtendedColorType) -> Result<Vec<u8
 /// # Errors
 /// If the encoder refuses, which takes a size of nothing.
 pub fn texels_png(texels: &Texels) -> Result<Vec<u8>, String> {
-    let shown = |x: f32| {
-        let x = f64::from(x).clamp(0.0, 1.0);
-        if texels.is_srgb { (x * 255.0).round() as u8 } else { display(x) }
-    };
+    let shown = |x: f32| display(f64::from(x));
     let rgb = |p: &[f32; 4]| match texels.channels {
         1 => [p[0]; 3].map(shown),
         _ => [p[0], p[1], p[2]].map(shown),
@@ -117,8 +124,6 @@ pub fn exr(texels: &Texels) -> Result<Vec<u8>, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::format::TextureFormat;
-    use crate::host::texels;
 
     fn halves(values: &[[f32; 4]]) -> Vec<u8> {
         values.iter().flatten().flat_map(|x| f16::from_f32(*x).to_le_bytes()).collect()
@@ -144,8 +149,7 @@ mod tests {
 
     #[test]
     fn exr_keeps_light_as_it_is() {
-        let light = halves(&[[0.25, 100.0, -1.0, 0.5]]);
-        let texels = texels::decode(TextureFormat::Rgba16Float, 1, 1, &light).expect("texels");
+        let texels = Texels { width: 1, height: 1, rgba: vec![[0.25, 100.0, -1.0, 0.5]], channels: 4 };
         let back = decoded(&exr(&texels).expect("an EXR")).into_rgba32f().into_raw();
         assert_eq!(back, [0.25, 100.0, -1.0, 0.5]);
     }

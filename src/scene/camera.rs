@@ -18,23 +18,6 @@ pub struct Camera {
     pub near_m: Option<f64>,
 }
 
-/// What is known of a camera while frames run, each as `input.field` in expressions.
-pub const FIELDS: &[&str] = &[
-    "clip_from_world",
-    "world_from_clip",
-    "view_from_world",
-    "world_from_view",
-    "clip_from_view",
-    "view_from_clip",
-    "position",
-    "near",
-    "far",
-    "tan_half_fov",
-    "viewport",
-    "pixel_m",
-    "orthographic",
-];
-
 impl Camera {
     /// Looks from `eye` at `target` with y up.
     pub fn new(eye: DVec3, target: DVec3, fov_degrees: f64) -> Self {
@@ -98,7 +81,7 @@ impl Camera {
         )
     }
 
-    /// The value of one of [`FIELDS`]. Matrices are 16 numbers, column after column.
+    /// The value of a field of [`crate::plan::fields::CAMERA`]. Matrices are 16 numbers, column after column.
     pub fn field(&self, name: &str, viewport: [u32; 2]) -> Option<Value> {
         let view = self.view_from_world();
         let clip = self.clip_from_view(viewport);
@@ -138,9 +121,6 @@ pub struct Light {
     pub intensity: f64,
 }
 
-/// What is known of a light, each as `input.field` in expressions.
-pub const LIGHT_FIELDS: &[&str] = &["direction", "color", "intensity"];
-
 impl Light {
     pub fn fault(&self) -> Option<&'static str> {
         if !self.direction.is_finite() || self.direction.length_squared() == 0.0 {
@@ -154,7 +134,7 @@ impl Light {
         }
     }
 
-    /// The value of one of [`LIGHT_FIELDS`]; the direction is unit.
+    /// The value of a field of [`crate::plan::fields::LIGHT`]; the direction is unit.
     pub fn field(&self, name: &str) -> Option<Value> {
         Some(match name {
             "direction" => Value::vec(self.direction.normalize_or(DVec3::NEG_Y).to_array()),
@@ -168,6 +148,7 @@ impl Light {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::plan::fields;
 
     const SIZE: [u32; 2] = [640, 480];
 
@@ -229,10 +210,10 @@ mod tests {
     #[test]
     fn every_listed_field_has_a_value_and_no_other_has() {
         let camera = Camera::new(DVec3::Z, DVec3::ZERO, 40.0);
-        assert!(FIELDS.iter().all(|name| camera.field(name, SIZE).is_some()));
+        assert!(fields::CAMERA.iter().all(|(name, _)| camera.field(name, SIZE).is_some()));
         assert_eq!(camera.field("positions", SIZE), None);
         let light = Light { direction: DVec3::new(0.0, -2.0, 0.0), color: DVec3::ONE, intensity: 3.0 };
-        assert!(LIGHT_FIELDS.iter().all(|name| light.field(name).is_some()));
+        assert!(fields::LIGHT.iter().all(|(name, _)| light.field(name).is_some()));
         assert_eq!(numbers(light.field("direction")), [0.0, -1.0, 0.0]);
     }
 

@@ -1,0 +1,189 @@
+//! Building what was loaded on a device, aside, so that a failure leaves what was there.
+
+use std::collections::BTreeMap;
+
+use super::inputs::Input;
+use super::load::{COLOR, Content};
+use crate::diagnostic::{Code, Diagnostic, Diagnostics};
+use crate::engine::{Engine, Gpu, Runner};
+use crate::plan;
+use crate::plan::model::{ObjectKind, ObjectRef, Origin, Plan, Texture};
+use crate::scene::convert;
+
+/// A device, and what is built on it.
+#[derive(Debug)]
+pub struct Session {
+    pub(super) engine: Engine,
+    pub(super) graph: Option<Runner>,
+    pub(super) present: Option<Runner>,
+    pub(super) content: Option<Content>,
+    /// Room that counted buffers turned out to need, by instance path.
+    pub(super) capacities: BTreeMap<String, u64>,
+}
+
+/// What a build made.
+#[derive(Clone, Debug, Default)]
+pub struct Built {
+    pub pipelines_built: usize,
+    pub pipelines_reused: usize,
+    /// Bytes of textures and buffers.
+    pub memory_bytes: u64,
+    /// Notes and warnings of planning.
+    pub diagnostics: Diagnostics,
+}
+
+impl Session {
+    pub fn new(gpu: Gpu) -> Self {
+        Self { engine: Engine::new(gpu), graph: None, present: None, content: None, capacities: BTreeMap::new() }
+    }
+
+    pub fn gpu(&self) -> &Gpu {
+        self.engine.gpu()
+    }
+
+    /// The plan of the scene's graph, once it is built.
+    pub fn plan(&self) -> Option<&Plan> {
+        self.graph.as_ref().map(Runner::plan)
+    }
+
+    /// Builds content beside what is there, and swaps it in if all of it works.
+    ///
+    /// # Errors
+    /// With everything that planning or the device refuses; then the session is as it was.
+    pub fn build(&mut self, content: Content) -> Result<Built, Diagnostics> {
+        let (plan, present_plan) = self.plans(&content)?;
+        let warnings = plan.warnings.clone();
+        let present_before = self.present.take();
+        let mut present = match self.engine.prepare(present_plan, present_before) {
+            Ok(runner) => runner,
+            Err(refused) => {
+                self.present = refused.previous;
+                return Err(refused.diagnostics);
+            }
+        };
+        let mut graph = match self.engine.prepare(plan, self.graph.take()) {
+            Ok(runner) => runner,
+            Err(refused) => {
+                (self.graph, self.present) = (refused.previous, Some(present));
+                return Err(refused.diagnostics);
+            }
+        };
+        let before = self.content.take();
+        let uploaded = upload(&self.engine, &mut graph, &content.inputs, before.as_ref().map(|c| &c.inputs))
+            .and_then(|()| {
+                let before = before.as_ref().map(|c| &c.present_inputs);
+                upload(&self.engine, &mut present, &content.present_inputs, before)
+            });
+        let reports = [graph.build_report(), present.build_report()];
+        let built = Built {
+            pipelines_built: reports.iter().map(|r| r.pipelines_built).sum(),
+            pipelines_reused: reports.iter().map(|r| r.pipelines_reused).sum(),
+            memory_bytes: graph.memory_bytes() + present.memory_bytes(),
+            diagnostics: warnings,
+        };
+        (self.graph, self.present) = (Some(graph), Some(present));
+        // Without content, what was uploaded in part is uploaded whole at the next build.
+        uploaded?;
+        self.content = Some(content);
+        Ok(built)
+    }
+
+    fn plans(&self, content: &Content) -> Result<(Plan, Plan), Diagnostics> {
+        let gpu = self.engine.gpu();
+        check_size(content.viewport, &gpu.limits())?;
+        let request = content.request(gpu.features(), gpu.limits(), &self.capacities);
+        let plan = plan::instantiate(&content.program, &request)?;
+        let color = picture(&plan)?.clone();
+        let request = content.present_request(color, gpu.features(), gpu.limits());
+        let present = plan::instantiate(&content.present, &request)?;
+        Ok((plan, present))
+    }
+
+    /// Plans and prepares the graph again with more room; inputs stay.
+    pub(super) fn grow(&mut self) -> Result<(), Diagnostics> {
+        let Some(content) = self.content.take() else { return Ok(()) };
+        self.build(content).map(|_| ())
+    }
+}
+
+fn check_size(viewport: [u32; 2], limits: &wgpu_types::Limits) -> Result<(), Diagnostic> {
+    let most = limits.max_texture_dimension_2d;
+    if viewport.iter().all(|side| *side <= most) {
+        return Ok(());
+    }
+    let [width, height] = viewport;
+    let message = format!("{width} x {height} pixels are more than this device can do: {most} each way");
+    Err(Diagnostic::error(Code::USAGE, message))
+}
+
+/// The first output, which is the picture.
+fn picture(plan: &Plan) -> Result<&Texture, Diagnostic> {
+    let path = plan.graph.display();
+    let Some(output) = plan.outputs.first() else {
+        return Err(Diagnostic::error(Code::WRONG_KIND, format!("`{path}` has no output to show")));
+    };
+    let object = match output.object {
+        ObjectRef::Fixed(id) => Some(id),
+        ObjectRef::Ring { ring, index } => plan.rings.get(ring).and_then(|r| r.objects.get(index)).copied(),
+    };
+    match object.and_then(|id| plan.objects.get(id)) {
+        Some(object) => match &object.kind {
+            ObjectKind::Texture(texture) if texture.layers == 1 && !texture.is_3d => Ok(texture),
+            _ => {
+                let message = format!("the first output of `{path}` is the picture, and `{}` is none", output.name);
+                Err(Diagnostic::error(Code::WRONG_KIND, message).at(object.span, "this is no 2D texture"))
+            }
+        },
+        None => Err(Diagnostic::error(Code::WRONG_KIND, format!("`{path}` has no output to show"))),
+    }
+}
+
+/// Hands the device the inputs that it does not have already.
+fn upload(
+    engine: &Engine,
+    runner: &mut Runner,
+    inputs: &BTreeMap<String, Input>,
+    before: Option<&BTreeMap<String, Input>>,
+) -> Result<(), Diagnostics> {
+    let mut found = Diagnostics::new();
+    for id in 0..runner.plan().objects.len() {
+        let object = &runner.plan().objects[id];
+        let (Origin::Input(name) | Origin::Attribute { input: name, .. }) = &object.origin else { continue };
+        let Some(input) = inputs.get(name) else { continue };
+        let is_same = before.and_then(|b| b.get(name)).is_some_and(|b| b.is_same(input));
+        if is_same && runner.keeps_input(id) {
+            continue;
+        }
+        if let Err(error) = fill(engine, runner, id, input) {
+            found.push(error);
+        }
+    }
+    if found.is_empty() { Ok(()) } else { Err(found) }
+}
+
+fn fill(engine: &Engine, runner: &mut Runner, id: usize, input: &Input) -> Result<(), Diagnostic> {
+    let object = &runner.plan().objects[id];
+    match (&object.origin, &object.kind, input) {
+        (Origin::Attribute { attribute, present, .. }, ObjectKind::Buffer(buffer), Input::Particles(particles)) => {
+            let column = particles.set.attribute(attribute).filter(|_| *present);
+            let bytes = match column {
+                Some(column) => convert::rows(column, buffer.item.as_ref(), buffer.stride)
+                    .map_err(|why| Diagnostic::error(Code::BINDING_MISMATCH, why).at(object.span, "asked for here"))?,
+                // An optional attribute that the file lacks is all zeros.
+                None => vec![0; usize::try_from(buffer.bytes()).unwrap_or(0)],
+            };
+            runner.upload_buffer(engine, id, &bytes)
+        }
+        (_, ObjectKind::Texture(_), Input::Image(image)) => {
+            runner.upload_texture(engine, id, 0, 0, bytemuck::cast_slice(image.texels.as_flattened()))
+        }
+        (_, ObjectKind::Buffer(buffer), Input::Table(rows)) => {
+            let bytes = convert::table(rows, buffer.item.as_ref(), buffer.stride)
+                .map_err(|why| Diagnostic::error(Code::BINDING_MISMATCH, why).at(object.span, "asked for here"))?;
+            runner.upload_buffer(engine, id, &bytes)
+        }
+        // The picture that is presented is shared, not uploaded.
+        (Origin::Input(name), ..) if name == COLOR => Ok(()),
+        _ => Ok(()),
+    }
+}

@@ -1,0 +1,243 @@
+//! Drawing a moment: steps from the start, one picture, more room where counts ask for it.
+
+use std::collections::BTreeMap;
+use std::time::Instant;
+
+use super::build::Session;
+use super::inputs::Input;
+use super::load::{COLOR, Content};
+use super::picture::Texels;
+use crate::diagnostic::{Code, Diagnostic, Diagnostics};
+use crate::engine::{Frame, Report, Runner, TextureData};
+use crate::graph::value::Value;
+use crate::plan::model::{ObjectKind, ObjectRef, Origin, Plan};
+
+/// Frames a second, where nobody says.
+const FRAMES_PER_SECOND: f64 = 60.0;
+/// A frame is repeated with more room at most so often.
+const MOST_REPEATS: usize = 12;
+
+/// When a picture is.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Moment {
+    pub frame: u64,
+    /// Seconds since the start.
+    pub time_s: f64,
+}
+
+impl Moment {
+    pub fn at_frame(frame: u64) -> Self {
+        Self { frame, time_s: frame as f64 / FRAMES_PER_SECOND }
+    }
+
+    pub fn at_time(time_s: f64) -> Self {
+        Self { frame: (time_s * FRAMES_PER_SECOND).floor() as u64, time_s }
+    }
+}
+
+/// What drawing did.
+#[derive(Clone, Debug)]
+pub struct Drawn {
+    /// Of the graph, then of the presenting graph if it ran.
+    pub reports: Vec<Report>,
+    /// Frames that were repeated with more room.
+    pub repeats: usize,
+    /// From the first pass to the GPU's last answer, in milliseconds.
+    pub drawing_ms: f64,
+    /// Notes about buffers that grew.
+    pub diagnostics: Diagnostics,
+}
+
+impl Session {
+    /// Runs all steps up to a moment from the start, then draws it; `present` also turns the light
+    /// into a picture for screens.
+    ///
+    /// # Errors
+    /// If the device refuses something or is lost, or a counted buffer cannot get the room that it
+    /// needs.
+    pub fn draw(&mut self, moment: Moment, present: bool) -> Result<Drawn, Diagnostics> {
+        let began = Instant::now();
+        let mut notes = Diagnostics::new();
+        for repeats in 0..=MOST_REPEATS {
+            self.run_graph(moment)?;
+            if present {
+                self.run_present(moment)?;
+            }
+            let report = finish(&mut self.graph, &self.engine)?;
+            if self.has_grown(&report, &mut notes)? {
+                self.grow()?;
+                continue;
+            }
+            let mut reports = vec![report];
+            if present {
+                reports.push(finish(&mut self.present, &self.engine)?);
+            }
+            let drawing_ms = began.elapsed().as_secs_f64() * 1e3;
+            return Ok(Drawn { reports, repeats, drawing_ms, diagnostics: notes });
+        }
+        let endless = format!("counted buffers still have too little room after {MOST_REPEATS} repeats");
+        Err(Diagnostic::error(Code::OVERFLOW, endless).into())
+    }
+
+    fn run_graph(&mut self, moment: Moment) -> Result<(), Diagnostics> {
+        let (Some(content), Some(runner)) = (&self.content, &mut self.graph) else { return Err(nothing().into()) };
+        let live = live_values(content, &content.inputs);
+        if !runner.plan().steps.is_empty() {
+            runner.reset_state(&self.engine)?;
+        }
+        let is_per_frame = runner.plan().steps.iter().any(|s| s.rate.is_none());
+        // Steps at a rate only count time; those once a frame need each frame before.
+        let first = if is_per_frame { 0 } else { moment.frame };
+        for frame in first..=moment.frame {
+            let now = if frame == moment.frame { moment } else { Moment::at_frame(frame) };
+            let steps = steps_until(runner.plan(), runner.steps_done(), now, first)?;
+            let frame = Frame {
+                time: now.time_s,
+                delta: 1.0 / FRAMES_PER_SECOND,
+                frame: now.frame,
+                steps: &steps,
+                live: &|name, _| live.get(name).cloned(),
+                only: None,
+            };
+            runner.run(&self.engine, &frame)?;
+        }
+        Ok(())
+    }
+
+    fn run_present(&mut self, moment: Moment) -> Result<(), Diagnostics> {
+        let (Some(content), Some(graph), Some(present)) = (&self.content, &self.graph, &mut self.present) else {
+            return Err(nothing().into());
+        };
+        let live = live_values(content, &content.present_inputs);
+        let color = |o: &crate::plan::model::Object| matches!(&o.origin, Origin::Input(name) if name == COLOR);
+        if let (Some(input), Some(output)) = (present.plan().objects.iter().position(color), graph.plan().outputs.first()) {
+            present.share(input, graph, output.object)?;
+        }
+        let frame = Frame {
+            time: moment.time_s,
+            delta: 1.0 / FRAMES_PER_SECOND,
+            frame: moment.frame,
+            steps: &[],
+            live: &|name, _| live.get(name).cloned(),
+            only: None,
+        };
+        present.run(&self.engine, &frame).map(|_| ())
+    }
+
+    /// Whether counted buffers need more room than they had, which they get.
+    fn has_grown(&mut self, report: &Report, notes: &mut Diagnostics) -> Result<bool, Diagnostics> {
+        let mut errors = Diagnostics::new();
+        let mut grown = false;
+        for count in report.overflows() {
+            let (path, raw, room) = (&count.path, count.raw, count.capacity);
+            if count.in_steps {
+                let message = format!("`{path}` has room for {room} items, and {raw} were appended in a step");
+                let hint = "what is appended to inside `Steps` never grows: raise its capacity in the graph";
+                errors.push(Diagnostic::error(Code::OVERFLOW, message).hint(hint));
+            } else {
+                // Some room to spare: what comes after may count more once this one is whole.
+                let wanted = u64::from(raw) + u64::from(raw) / 8;
+                self.capacities.insert(path.clone(), wanted);
+                let message = format!("`{path}` had room for {room} items, and {raw} came: the frame was repeated");
+                notes.push(Diagnostic::note(Code::OVERFLOW, message).hint("raise its capacity in the graph to save the time"));
+                grown = true;
+            }
+        }
+        if errors.is_empty() { Ok(grown) } else { Err(errors) }
+    }
+
+    /// The presented picture: `Rgba16Float` texels, linear, 0 to 1.
+    ///
+    /// # Errors
+    /// If nothing was presented, or the device fails.
+    pub fn presented(&mut self) -> Result<TextureData, Diagnostic> {
+        let present = self.present.take().ok_or_else(nothing)?;
+        let read = match present.plan().outputs.first().map(|o| o.object) {
+            Some(output) => present.read_texture(&mut self.engine, output, 0, None),
+            None => Err(nothing()),
+        };
+        self.present = Some(present);
+        read
+    }
+
+    /// The graph's own picture: light, alpha multiplied in.
+    ///
+    /// # Errors
+    /// If nothing was drawn, or the device fails.
+    pub fn light(&mut self) -> Result<Texels, Diagnostic> {
+        let output = self.graph.as_ref().and_then(|g| g.plan().outputs.first()).ok_or_else(nothing)?;
+        self.texels(output.object)
+    }
+
+    /// Any texture's first mip, layers one below the other.
+    ///
+    /// # Errors
+    /// If it is no texture, or the device fails.
+    pub fn texels(&mut self, object: ObjectRef) -> Result<Texels, Diagnostic> {
+        let graph = self.graph.take().ok_or_else(nothing)?;
+        let read = graph.read_texture(&mut self.engine, object, 0, None);
+        self.graph = Some(graph);
+        read.map(|data| Texels {
+            width: data.width,
+            height: data.height * data.layers,
+            channels: crate::format::channels(data.format),
+            rgba: data.to_rgba_f32(),
+        })
+    }
+
+    /// Any buffer's bytes, with the header of a counted one.
+    ///
+    /// # Errors
+    /// If it is no buffer, or the device fails.
+    pub fn bytes(&self, object: ObjectRef) -> Result<Vec<u8>, Diagnostic> {
+        self.graph.as_ref().ok_or_else(nothing)?.read_buffer(&self.engine, object)
+    }
+
+    /// What an instance path of the graph names after the last pass.
+    pub fn object(&self, path: &str) -> Option<(ObjectRef, &ObjectKind)> {
+        let plan = self.plan()?;
+        let found = *plan.names.get(path)?;
+        let id = match found {
+            ObjectRef::Fixed(id) => id,
+            ObjectRef::Ring { ring, index } => *plan.rings.get(ring)?.objects.get(index)?,
+        };
+        Some((found, &plan.objects.get(id)?.kind))
+    }
+}
+
+fn nothing() -> Diagnostic {
+    Diagnostic::error(Code::DEVICE, "nothing was drawn yet")
+}
+
+fn finish(runner: &mut Option<Runner>, engine: &crate::engine::Engine) -> Result<Report, Diagnostic> {
+    runner.as_mut().ok_or_else(nothing)?.finish(engine)
+}
+
+/// The value of every field of every live input, as `input.field`.
+fn live_values(content: &Content, inputs: &BTreeMap<String, Input>) -> BTreeMap<String, Value> {
+    let mut values = BTreeMap::new();
+    for (name, input) in inputs {
+        for field in input.fields() {
+            if let Some(value) = input.field(field, &content.camera, content.viewport) {
+                values.insert(format!("{name}.{field}"), value);
+            }
+        }
+    }
+    values
+}
+
+/// How many steps each `Steps` runs in a frame: at a rate, those that the time asks for and that
+/// were not done; else one, from the frame `first` on.
+fn steps_until(plan: &Plan, done: &[u64], now: Moment, first: u64) -> Result<Vec<u32>, Diagnostic> {
+    let wanted = |(steps, done): (&crate::plan::model::Steps, &u64)| {
+        let until = match steps.rate {
+            Some(rate) => (now.time_s * rate).floor().max(0.0) as u64,
+            None => now.frame - first.min(now.frame) + 1,
+        };
+        u32::try_from(until.saturating_sub(*done)).map_err(|_| {
+            let message = format!("`{}` would run {until} steps until {} s", steps.path, now.time_s);
+            Diagnostic::error(Code::USAGE, message).hint("ask for an earlier time")
+        })
+    };
+    plan.steps.iter().zip(done).map(wanted).collect()
+}

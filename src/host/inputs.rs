@@ -1,0 +1,264 @@
+//! Feeding a graph's inputs from a scene's items of the same names.
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use wgpu_types::TextureUsages;
+
+use super::assets::{Asset, Cache, Particles, Pending, radius_m};
+use crate::diagnostic::{Code, Diagnostic, Diagnostics};
+use crate::format::TextureFormat;
+use crate::graph::model::{Graph, Input as Declared, InputKind};
+use crate::graph::value::Value;
+use crate::plan::fields::{self, FieldType};
+use crate::plan::model::{InputInfo, Texture};
+use crate::scene::image::Image;
+use crate::scene::{Light, Scene, find};
+
+/// What feeds an input.
+#[derive(Clone, Debug)]
+pub enum Input {
+    Camera,
+    Light(Light),
+    Pointer,
+    Particles(Arc<Particles>),
+    Image(Arc<Image>),
+    Table(Vec<BTreeMap<String, Value>>),
+}
+
+/// A particle file of the scene or the command line.
+#[derive(Debug)]
+pub(super) struct ParticleFile {
+    /// Absent: for the graph's only input of particles.
+    pub name: Option<String>,
+    pub path: PathBuf,
+    pub pending: Pending,
+    /// Metres, where somebody says.
+    pub radius_m: Option<f64>,
+}
+
+/// Everything that a scene and the command line offer, files perhaps still being decoded.
+#[derive(Debug)]
+pub(super) struct Offer<'a> {
+    pub scene: &'a Scene,
+    pub particles: Vec<ParticleFile>,
+    pub images: Vec<(String, Pending)>,
+}
+
+/// Decoded files by the names of the inputs that they are for.
+#[derive(Debug, Default)]
+pub(super) struct Decoded {
+    particles: BTreeMap<String, Arc<Particles>>,
+    images: BTreeMap<String, Arc<Image>>,
+    /// Names whose file has an error of its own: not missing.
+    failed: Vec<String>,
+}
+
+impl Offer<'_> {
+    /// Waits for all files.
+    pub fn decode(self, graph: Option<&Graph>, cache: &mut Cache, diagnostics: &mut Diagnostics) -> Decoded {
+        let mut decoded = Decoded::default();
+        for file in self.particles {
+            let ParticleFile { name, path, pending, radius_m: said } = file;
+            let name = name.map_or_else(|| only_particles(graph), Ok);
+            let asset = cache.finish(pending, diagnostics);
+            let name = match name {
+                Ok(name) => name,
+                Err(error) => {
+                    diagnostics.push(error);
+                    continue;
+                }
+            };
+            let Some(Asset::Particles(set, estimated)) = asset else {
+                decoded.failed.push(name);
+                continue;
+            };
+            match radius_m(&path, &set, estimated, said, diagnostics) {
+                Ok(radius_m) => _ = decoded.particles.insert(name, cache.sized(&path, set, radius_m)),
+                Err(error) => {
+                    diagnostics.push(error);
+                    decoded.failed.push(name);
+                }
+            }
+        }
+        for (name, pending) in self.images {
+            match cache.finish(pending, diagnostics) {
+                Some(Asset::Image(image)) => _ = decoded.images.insert(name, image),
+                _ => decoded.failed.push(name),
+            }
+        }
+        decoded
+    }
+}
+
+/// The name of a graph's one input of particles.
+fn only_particles(graph: Option<&Graph>) -> Result<String, Diagnostic> {
+    let Some(graph) = graph else { return Ok("particles".into()) };
+    let takes = graph.inputs.iter().filter(|i| matches!(i.kind, InputKind::Particles { .. }));
+    let names: Vec<&str> = takes.map(|i| i.name.value.as_str()).collect();
+    let path = graph.path.display();
+    match names.as_slice() {
+        [name] => Ok((*name).to_owned()),
+        [] => Err(Diagnostic::warning(Code::UNUSED, format!("`{path}` takes no particles: the file is not used"))),
+        [first, ..] => {
+            let message = format!("`{path}` takes several kinds of particles: {}", names.join(", "));
+            let hint = format!("say which: `--particles {first}=FILE`");
+            Err(Diagnostic::error(Code::USAGE, message).hint(hint))
+        }
+    }
+}
+
+/// Feeds every input of `graph`, and reports those that nothing feeds.
+pub(super) fn connect(
+    graph: &Graph,
+    scene: &Scene,
+    decoded: &Decoded,
+    diagnostics: &mut Diagnostics,
+) -> BTreeMap<String, Input> {
+    let mut inputs = BTreeMap::new();
+    for declared in &graph.inputs {
+        let name = &declared.name.value;
+        match offered(declared, scene, decoded) {
+            Some(input) => _ = inputs.insert(name.clone(), input),
+            None if decoded.failed.contains(name) => {}
+            None => {
+                if let Some(problem) = missing(declared, graph, scene) {
+                    diagnostics.push(problem);
+                }
+            }
+        }
+    }
+    inputs
+}
+
+fn offered(declared: &Declared, scene: &Scene, decoded: &Decoded) -> Option<Input> {
+    let name = &declared.name.value;
+    match &declared.kind {
+        InputKind::Camera => Some(Input::Camera),
+        InputKind::Pointer => Some(Input::Pointer),
+        InputKind::Light => find(&scene.lights, name).map(|item| Input::Light(item.value)),
+        InputKind::Particles { .. } => decoded.particles.get(name).cloned().map(Input::Particles),
+        InputKind::Texture { .. } => decoded.images.get(name).cloned().map(Input::Image),
+        InputKind::Table => find(&scene.tables, name).map(|item| Input::Table(item.value.clone())),
+        InputKind::Buffer | InputKind::Counted => None,
+    }
+}
+
+/// The words of a scene that feed a kind of input.
+fn section(kind: &InputKind) -> Option<(&'static str, &'static str)> {
+    match kind {
+        InputKind::Light => Some(("light", "lights")),
+        InputKind::Particles { .. } => Some(("particles", "particles")),
+        InputKind::Texture { .. } => Some(("texture", "textures")),
+        InputKind::Table => Some(("table", "tables")),
+        _ => None,
+    }
+}
+
+fn missing(declared: &Declared, graph: &Graph, scene: &Scene) -> Option<Diagnostic> {
+    let name = &declared.name.value;
+    let kind = declared.kind.name();
+    let items = scene.items();
+    let other = items.iter().find(|(_, item)| item.value == *name);
+    if let Some((found, item)) = other {
+        let message = format!("input `{name}` of `{}` is {kind}, and the scene's `{name}` is not", graph.path.display());
+        let error = Diagnostic::error(Code::WRONG_KIND, message).at(item.span, format!("this is under {found}"));
+        return Some(error.see(declared.span, format!("{kind} is declared here")));
+    }
+    if declared.optional {
+        return None;
+    }
+    let message = format!("nothing feeds the input `{name}` of `{}`", graph.path.display());
+    let error = Diagnostic::error(Code::MISSING_INPUT, message)
+        .at(scene.span, format!("the scene has no `{name}`"))
+        .see(declared.span, format!("{kind} is declared here"));
+    let Some((word, section)) = section(&declared.kind) else {
+        return Some(error.hint(format!("scenes cannot give {kind}: such a graph is a part of others")));
+    };
+    let same = items.iter().filter(|(found, _)| *found == word).map(|(_, item)| item.value.as_str());
+    let error = error.nearest(name, same);
+    Some(match word {
+        "particles" => error.hint(format!("give it with `--particles FILE`, or under `{section}:` in the scene")),
+        _ => error.hint(format!("give it under `{section}:` in the scene")),
+    })
+}
+
+/// A warning for each item that nothing takes.
+pub(super) fn unused(scene: &Scene, takers: &[&Graph], diagnostics: &mut Diagnostics) {
+    let inputs: Vec<&str> = takers.iter().flat_map(|g| &g.inputs).map(|i| i.name.value.as_str()).collect();
+    for (kind, name) in scene.items() {
+        // A backdrop and a sun are there for whichever graph comes.
+        if !inputs.contains(&name.value.as_str()) {
+            let message = format!("no input takes the scene's {kind} `{}`", name.value);
+            let warning = Diagnostic::warning(Code::UNUSED, message).at(name.span, "not used");
+            diagnostics.push(warning.nearest(&name.value, inputs.iter().copied()));
+        }
+    }
+}
+
+impl Input {
+    /// What planning needs to know of it.
+    pub fn info(&self) -> InputInfo {
+        match self {
+            Input::Camera => InputInfo::Camera,
+            Input::Light(_) => InputInfo::Light,
+            Input::Pointer => InputInfo::Pointer,
+            Input::Table(rows) => InputInfo::Table { rows: rows.clone() },
+            Input::Image(image) => InputInfo::Texture(Texture {
+                format: TextureFormat::Rgba16Float,
+                width: image.width,
+                height: image.height,
+                layers: 1,
+                is_3d: false,
+                mips: 1,
+                samples: 1,
+                usages: TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_DST,
+            }),
+            Input::Particles(particles) => InputInfo::Particles {
+                count: particles.set.count as u64,
+                radius: particles.radius_m,
+                min: particles.set.min.map(f64::from),
+                max: particles.set.max.map(f64::from),
+                attributes: particles.set.attributes.iter().map(|a| (a.name.clone(), a.components as u32)).collect(),
+            },
+        }
+    }
+
+    /// The names of its live fields.
+    pub fn fields(&self) -> impl Iterator<Item = &'static str> {
+        let table: &[(&'static str, FieldType)] = match self {
+            Input::Camera => fields::CAMERA,
+            Input::Light(_) => fields::LIGHT,
+            Input::Pointer => fields::POINTER,
+            _ => &[],
+        };
+        table.iter().map(|(name, _)| *name)
+    }
+
+    /// The live value of a field, for the inputs that have any.
+    pub fn field(&self, field: &str, camera: &crate::scene::Camera, viewport: [u32; 2]) -> Option<Value> {
+        match self {
+            Input::Camera => camera.field(field, viewport),
+            Input::Light(light) => light.field(field),
+            Input::Pointer => match field {
+                // Nobody points while pictures are made without a window.
+                "origin" => Some(Value::vec([0.0; 3])),
+                "direction" => Some(Value::vec([0.0, -1.0, 0.0])),
+                "pressed" => Some(Value::Int(0)),
+                _ => None,
+            },
+            _ => None,
+        }
+    }
+
+    /// Whether both are the same memory, so that nothing needs to go to the device again.
+    pub fn is_same(&self, other: &Input) -> bool {
+        match (self, other) {
+            (Input::Particles(a), Input::Particles(b)) => Arc::ptr_eq(a, b),
+            (Input::Image(a), Input::Image(b)) => Arc::ptr_eq(a, b),
+            (Input::Table(a), Input::Table(b)) => a == b,
+            _ => false,
+        }
+    }
+}

@@ -1,0 +1,328 @@
+//! From files to everything that a picture needs, without a device.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use glam::DVec3;
+use wgpu_types::{Features, Limits};
+
+use super::assets::{AssetKind, Cache};
+use super::inputs::{self, Input, Offer, ParticleFile};
+use super::params::{self, Given, Raw};
+use super::source;
+use crate::diagnostic::{Code, Diagnostic, Diagnostics, Sources, Span};
+use crate::files::{self, Files, Kind};
+use crate::graph::value::Value;
+use crate::plan::model::{InputInfo, Request, Texture};
+use crate::program::{self, Program, missing_file};
+use crate::scene::{Camera, Item, Scene, framing, particles};
+
+/// The graph that turns light into a picture.
+const PRESENT: &str = "parts/present.ron";
+/// Names of its parameters on the command line begin so.
+const PRESENT_PREFIX: &str = "present.";
+const DEFAULT_SIZE: [u32; 2] = [1024, 768];
+
+/// What somebody asks to see.
+#[derive(Clone, Debug, Default)]
+pub struct Job {
+    /// A scene or a particle file.
+    pub source: PathBuf,
+    /// In place of the scene's.
+    pub graph: Option<String>,
+    /// In place of the scene's: a file, or `name=file`.
+    pub particles: Option<String>,
+    /// Metres, in place of any other radius.
+    pub radius_m: Option<f64>,
+    /// Pixels, in place of the scene's.
+    pub size: Option<[u32; 2]>,
+    /// Parameters by instance path, in place of the scene's values.
+    pub set: Vec<(String, String)>,
+    pub eye: Option<[f64; 3]>,
+    pub target: Option<[f64; 3]>,
+    /// Vertical.
+    pub fov_degrees: Option<f64>,
+    /// Coverage stays as alpha, without a backdrop.
+    pub transparent: bool,
+    /// Instance paths that are wanted besides the picture.
+    pub roots: Vec<String>,
+}
+
+/// Everything that a picture is made of.
+#[derive(Clone, Debug)]
+pub struct Content {
+    pub program: Program,
+    pub present: Program,
+    pub inputs: BTreeMap<String, Input>,
+    /// What feeds the presenting graph, besides the picture.
+    pub present_inputs: BTreeMap<String, Input>,
+    pub camera: Camera,
+    /// Pixels.
+    pub viewport: [u32; 2],
+    pub params: BTreeMap<String, Value>,
+    pub present_params: BTreeMap<String, Value>,
+    pub roots: Vec<String>,
+}
+
+/// What loading gave.
+#[derive(Debug)]
+pub struct Loaded {
+    /// Absent if anything had an error.
+    pub content: Option<Content>,
+    pub diagnostics: Diagnostics,
+    /// Every file that was read or, where missing, looked for.
+    pub read: Vec<PathBuf>,
+}
+
+/// Loads a scene with its graph, its files, and the graph that presents it.
+pub fn load(files: &dyn Files, sources: &mut Sources, job: &Job, cache: &mut Cache) -> Loaded {
+    let mut loader =
+        Loader { files, sources, job, cache, diagnostics: Diagnostics::new(), read: vec![job.source.clone()] };
+    let content = loader.content();
+    let Loader { diagnostics, mut read, .. } = loader;
+    read.sort();
+    read.dedup();
+    let content = content.filter(|_| !diagnostics.has_errors());
+    Loaded { content, diagnostics, read }
+}
+
+struct Loader<'a> {
+    files: &'a dyn Files,
+    sources: &'a mut Sources,
+    job: &'a Job,
+    cache: &'a mut Cache,
+    diagnostics: Diagnostics,
+    read: Vec<PathBuf>,
+}
+
+impl Loader<'_> {
+    fn content(&mut self) -> Option<Content> {
+        let source = source::read(self.files, &self.job.source, self.sources, &mut self.diagnostics)?;
+        let scene = source.scene;
+        // Files decode on other threads while the graphs are read.
+        let offer = Offer { scene: &scene, particles: self.particles(&scene, source.particles), images: self.images(&scene) };
+        let program = self.graph(&scene);
+        let present = self.program(PRESENT, Some(&scene.path));
+        let root = program.as_ref().map(|p| &*p.root);
+        let decoded = offer.decode(root, self.cache, &mut self.diagnostics);
+        let (program, present) = (program?, present?);
+        let inputs = inputs::connect(&program.root, &scene, &decoded, &mut self.diagnostics);
+        let (own, shared) = self.params(&scene, &program, &present);
+        let viewport = self.job.size.or(scene.size).unwrap_or(DEFAULT_SIZE);
+        let camera = self.camera(&scene, &inputs, viewport)?;
+        let present_inputs = self.present_inputs(&present, &scene, &decoded);
+        if !scene.path.starts_with(files::LIBRARY) {
+            inputs::unused(&scene, &[&program.root, &present.root], &mut self.diagnostics);
+        }
+        let roots = self.job.roots.clone();
+        let (params, present_params) = (own, shared);
+        Some(Content { program, present, inputs, present_inputs, camera, viewport, params, present_params, roots })
+    }
+
+    fn graph(&mut self, scene: &Scene) -> Option<Program> {
+        match (&self.job.graph, &scene.graph) {
+            (Some(name), _) => self.program(&name.clone(), None),
+            (None, Some(name)) => {
+                let found = files::find(self.files, Kind::Graph, &name.value, Some(&scene.path));
+                if let Err(missing) = found {
+                    self.read.extend(missing.tried.iter().cloned());
+                    self.diagnostics.push(missing_file(&name.value, Kind::Graph, &missing, Some(name.span)));
+                    return None;
+                }
+                self.program(&name.value.clone(), Some(&scene.path))
+            }
+            (None, None) => {
+                let lacks = Diagnostic::error(Code::MISSING_FIELD, "`Scene` lacks the field `graph`")
+                    .at(scene.span, "`graph` is missing here")
+                    .hint("or say `--graph GRAPH`");
+                self.diagnostics.push(lacks);
+                None
+            }
+        }
+    }
+
+    fn program(&mut self, name: &str, beside: Option<&Path>) -> Option<Program> {
+        let loaded = program::load(self.files, self.sources, name, beside);
+        self.read.extend(loaded.read);
+        self.diagnostics.extend(loaded.diagnostics);
+        loaded.program
+    }
+
+    /// The scene's particle files, with those that the command line puts in their place.
+    fn particles(&mut self, scene: &Scene, given: Option<Arc<[u8]>>) -> Vec<ParticleFile> {
+        let (replaced, file) = match self.job.particles.as_deref().map(|text| (text, text.split_once('='))) {
+            Some((_, Some((name, file)))) => (Some(name.to_owned()), Some(file.to_owned())),
+            Some((file, None)) => (None, Some(file.to_owned())),
+            None => (None, None),
+        };
+        let mut list = Vec::new();
+        for item in &scene.particles {
+            // The one file on the command line takes the place of the scene's one.
+            let same = replaced.as_deref().is_none_or(|name| name == item.name.value);
+            let is_replaced = file.is_some() && same && (replaced.is_some() || scene.particles.len() == 1);
+            if !is_replaced && let Some(bytes) = self.asset(&item.value.file.value, Some(&scene.path), item.value.file.span) {
+                let said = self.job.radius_m.or(item.value.radius_m.as_ref().map(|r| r.value));
+                let at = Some(item.value.file.span);
+                list.push(self.particle_file(Some(item.name.value.clone()), bytes.0, bytes.1, said, at));
+            }
+        }
+        if let Some(bytes) = given {
+            list.push(self.particle_file(None, self.job.source.clone(), bytes, self.job.radius_m, None));
+        }
+        if let Some(path) = file.map(PathBuf::from) {
+            self.read.push(path.clone());
+            match source::named(self.files, &path) {
+                Ok(bytes) => list.push(self.particle_file(replaced, path, bytes, self.job.radius_m, None)),
+                Err(error) => self.diagnostics.push(error),
+            }
+        }
+        list
+    }
+
+    fn particle_file(
+        &self,
+        name: Option<String>,
+        path: PathBuf,
+        bytes: Arc<[u8]>,
+        radius_m: Option<f64>,
+        at: Option<Span>,
+    ) -> ParticleFile {
+        let kind = AssetKind::Particles { estimate: radius_m.is_none() };
+        let pending = self.cache.begin(&path, bytes, kind, at);
+        ParticleFile { name, path, pending, radius_m }
+    }
+
+    fn images(&mut self, scene: &Scene) -> Vec<(String, super::assets::Pending)> {
+        let mut list = Vec::new();
+        for Item { name, value: file, .. } in &scene.textures {
+            if let Some((path, bytes)) = self.asset(&file.value, Some(&scene.path), file.span) {
+                list.push((name.value.clone(), self.cache.begin(&path, bytes, AssetKind::Image, Some(file.span))));
+            }
+        }
+        list
+    }
+
+    /// A file that a scene names.
+    fn asset(&mut self, name: &str, beside: Option<&Path>, at: Span) -> Option<(PathBuf, Arc<[u8]>)> {
+        match files::find(self.files, Kind::Asset, name, beside) {
+            Ok(found) => {
+                self.read.push(found.path.clone());
+                Some((found.path, found.bytes))
+            }
+            Err(missing) => {
+                self.read.extend(missing.tried.iter().cloned());
+                self.diagnostics.push(missing_file(name, Kind::Asset, &missing, Some(at)));
+                None
+            }
+        }
+    }
+
+    /// Values of the graph's parameters, and of the presenting graph's.
+    fn params(
+        &mut self,
+        scene: &Scene,
+        program: &Program,
+        present: &Program,
+    ) -> (BTreeMap<String, Value>, BTreeMap<String, Value>) {
+        let in_scene = |item: &Item<Value>| Given {
+            path: item.name.value.clone(),
+            raw: Raw::Value(item.value.clone()),
+            span: Some(item.name.span),
+        };
+        let mut own: Vec<Given> = scene.params.iter().map(in_scene).collect();
+        let mut shared: Vec<Given> = scene.present.iter().map(in_scene).collect();
+        for (name, value) in &self.job.set {
+            let typed = |path: &str| Given { path: path.to_owned(), raw: Raw::Text(value.clone()), span: None };
+            match name.strip_prefix(PRESENT_PREFIX) {
+                Some(path) => shared.push(typed(path)),
+                None => own.push(typed(name)),
+            }
+        }
+        if self.job.transparent {
+            shared.push(Given { path: "transparent".into(), raw: Raw::Value(Value::Bool(true)), span: None });
+        }
+        let own = params::resolve(&own, program, &mut self.diagnostics);
+        (own, params::resolve(&shared, present, &mut self.diagnostics))
+    }
+
+    /// The scene's camera, else one that frames the first particles; the command line's terms win.
+    fn camera(&mut self, scene: &Scene, inputs: &BTreeMap<String, Input>, viewport: [u32; 2]) -> Option<Camera> {
+        let job = self.job;
+        let mut camera = match &scene.camera {
+            Some(camera) => camera.value,
+            None => {
+                let seen = inputs.values().find_map(|input| match input {
+                    Input::Particles(particles) => Some(particles),
+                    _ => None,
+                });
+                let (positions, radius) = seen.map_or((Vec::new(), 0.0), |p| (p.set.positions(), p.radius_m));
+                framing::frame(&positions, radius, viewport, job.fov_degrees.unwrap_or(framing::FOV_DEGREES))
+            }
+        };
+        camera.eye = job.eye.map_or(camera.eye, DVec3::from_array);
+        camera.target = job.target.map_or(camera.target, DVec3::from_array);
+        camera.fov_degrees = job.fov_degrees.unwrap_or(camera.fov_degrees);
+        if let Some(fault) = camera.fault() {
+            self.diagnostics.push(Diagnostic::error(Code::USAGE, fault));
+            return None;
+        }
+        Some(camera)
+    }
+
+    /// The presenting graph takes the scene's items too, and a light of the default scene where
+    /// the scene has none.
+    fn present_inputs(
+        &mut self,
+        present: &Program,
+        scene: &Scene,
+        decoded: &inputs::Decoded,
+    ) -> BTreeMap<String, Input> {
+        let mut quiet = Diagnostics::new();
+        let mut found = inputs::connect(&present.root, scene, decoded, &mut quiet);
+        if let Some(defaults) = source::default_scene(self.sources, &mut self.diagnostics) {
+            let others = inputs::connect(&present.root, &defaults, &inputs::Decoded::default(), &mut quiet);
+            others.into_iter().for_each(|(name, input)| _ = found.entry(name).or_insert(input));
+        }
+        found
+    }
+}
+
+impl Content {
+    /// What planning the graph needs to know.
+    pub fn request(&self, features: Features, limits: Limits, capacities: &BTreeMap<String, u64>) -> Request {
+        Request {
+            viewport: self.viewport,
+            params: self.params.clone(),
+            inputs: self.inputs.iter().map(|(name, input)| (name.clone(), input.info())).collect(),
+            capacities: capacities.clone(),
+            roots: self.roots.clone(),
+            features,
+            limits,
+        }
+    }
+
+    /// The same for the presenting graph, which takes the picture as its input `color`.
+    pub fn present_request(&self, color: Texture, features: Features, limits: Limits) -> Request {
+        let mut inputs: BTreeMap<String, InputInfo> =
+            self.present_inputs.iter().map(|(name, input)| (name.clone(), input.info())).collect();
+        inputs.insert(COLOR.into(), InputInfo::Texture(color));
+        Request {
+            viewport: self.viewport,
+            params: self.present_params.clone(),
+            inputs,
+            capacities: BTreeMap::new(),
+            roots: Vec::new(),
+            features,
+            limits,
+        }
+    }
+}
+
+/// The presenting graph's input for the picture.
+pub(super) const COLOR: &str = "color";
+
+/// Whether a file is one that [`load`] takes, by its name.
+pub fn is_renderable(path: &Path) -> bool {
+    source::is_scene(path) || particles::known_extension(path)
+}

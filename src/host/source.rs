@@ -1,0 +1,81 @@
+//! What is rendered: a scene file, or particles that get the default scene.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use crate::diagnostic::{Code, Diagnostic, Diagnostics, Sources};
+use crate::files::{Files, LIBRARY, library_file};
+use crate::scene::{self, Scene, particles};
+
+/// The scene for particles that came without one, in the library that the program carries.
+const DEFAULT_SCENE: &str = "scenes/default.ron";
+
+/// A scene, and the bytes of a particle file if that was given in its place.
+#[derive(Debug)]
+pub(super) struct Source {
+    pub scene: Scene,
+    pub particles: Option<Arc<[u8]>>,
+}
+
+/// Whether a path names a scene file by its extension.
+pub(super) fn is_scene(path: &Path) -> bool {
+    path.extension().is_some_and(|end| end.eq_ignore_ascii_case("ron"))
+}
+
+/// Reads the file that was named.
+pub(super) fn read(
+    files: &dyn Files,
+    path: &Path,
+    sources: &mut Sources,
+    diagnostics: &mut Diagnostics,
+) -> Option<Source> {
+    let is_particles = particles::known_extension(path);
+    let bytes = match named(files, path) {
+        Ok(bytes) => bytes,
+        Err(error) => {
+            diagnostics.push(error);
+            return None;
+        }
+    };
+    if is_scene(path) {
+        let scene = scene::read(path, &bytes, sources, diagnostics)?;
+        Some(Source { scene, particles: None })
+    } else if is_particles {
+        let scene = default_scene(sources, diagnostics)?;
+        Some(Source { scene, particles: Some(bytes) })
+    } else {
+        let message = format!("`{}` is neither a scene (.ron) nor a particle file", path.display());
+        let ends = ".vtk, .vtu, .vtp, .ply, .bgeo, .bgeo.gz, .xyz and .csv";
+        diagnostics.push(Diagnostic::error(Code::USAGE, message).hint(format!("particle files end in {ends}")));
+        None
+    }
+}
+
+/// The scene that the program carries.
+pub(super) fn default_scene(sources: &mut Sources, diagnostics: &mut Diagnostics) -> Option<Scene> {
+    let path = Path::new(LIBRARY).join(DEFAULT_SCENE);
+    match library_file(Path::new(DEFAULT_SCENE)) {
+        Some(bytes) => scene::read(&path, bytes, sources, diagnostics),
+        None => {
+            diagnostics.push(Diagnostic::error(Code::FILE_MISSING, "this build carries no default scene"));
+            None
+        }
+    }
+}
+
+/// The bytes of a file that the command line names.
+///
+/// # Errors
+/// If it is missing, a folder, or unreadable.
+pub(super) fn named(files: &dyn Files, path: &Path) -> Result<Arc<[u8]>, Diagnostic> {
+    if path.is_dir() {
+        return Err(Diagnostic::error(Code::FILE_UNREADABLE, format!("`{}` is a folder", path.display()))
+            .hint("name a file in it"));
+    }
+    files.read(path).map_err(|error| match error.kind() {
+        std::io::ErrorKind::NotFound => {
+            Diagnostic::error(Code::FILE_MISSING, format!("there is no file `{}`", path.display()))
+        }
+        _ => Diagnostic::error(Code::FILE_UNREADABLE, format!("`{}` cannot be read: {error}", path.display())),
+    })
+}
