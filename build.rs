@@ -1,4 +1,4 @@
-//! Lists the graphs and shaders of the repository as the library that the program carries.
+//! Lists the graphs, scenes and shaders of the repository as the library that the program carries.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -7,7 +7,7 @@ use std::{env, fs, io};
 fn main() -> io::Result<()> {
     let root = PathBuf::from(env::var_os("CARGO_MANIFEST_DIR").ok_or(io::ErrorKind::NotFound)?);
     let mut names = Vec::new();
-    for folder in ["graphs", "shaders"] {
+    for folder in ["graphs", "scenes", "shaders"] {
         println!("cargo::rerun-if-changed={folder}");
         collect(&root.join(folder), folder, &mut names)?;
     }

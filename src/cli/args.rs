@@ -5,8 +5,6 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
-use crate::host::Backend;
-
 /// Data-driven render graphs: checked, planned, run and reloaded.
 #[derive(Debug, Parser)]
 #[command(name = "meniscus", version, about, propagate_version = true, disable_help_subcommand = true)]
@@ -66,8 +64,8 @@ pub struct SceneArgs {
     #[arg(long, value_name = "DEGREES", value_parser = fov, allow_negative_numbers = true)]
     pub fov: Option<f64>,
     /// The graphics interface to use
-    #[arg(long, value_name = "NAME", value_enum)]
-    pub backend: Option<Backend>,
+    #[arg(long, value_name = "NAME", value_parser = ["vulkan", "metal", "dx12", "gl"])]
+    pub backend: Option<String>,
 }
 
 #[derive(Args, Clone, Debug)]

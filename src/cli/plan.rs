@@ -1,0 +1,87 @@
+//! `meniscus plan`: what would run, in what order, on what memory, and why.
+
+use std::collections::BTreeMap;
+
+use super::args::{PlanArgs, PlanFormat};
+use super::check::{FileKind, kind, name};
+use super::report::{Exit, print, report};
+use crate::diagnostic::{Code, Diagnostic, Diagnostics, Sources};
+use crate::files::DiskFiles;
+use crate::host::params::{Given, Raw, resolve};
+use crate::host::{Cache, Job, load};
+use crate::plan::model::Plan;
+use crate::plan::print as printed;
+use crate::{check, plan, program};
+
+pub fn run(args: &PlanArgs) -> Exit {
+    let mut sources = Sources::new();
+    match make(args, &mut sources) {
+        Ok((plan, found)) => {
+            let exit = report(&found, &sources);
+            let text = match args.format {
+                PlanFormat::Text => printed::text(&plan),
+                PlanFormat::Json => printed::json(&plan),
+                PlanFormat::Dot => printed::dot(&plan),
+                PlanFormat::Svg => printed::svg(&plan),
+            };
+            match print(&text) {
+                Exit::Done => exit,
+                failed => failed,
+            }
+        }
+        Err(found) => report(&found, &sources),
+    }
+}
+
+fn make(args: &PlanArgs, sources: &mut Sources) -> Result<(Plan, Diagnostics), Diagnostics> {
+    match kind(&args.graph)? {
+        FileKind::Graph => of_graph(args, sources),
+        FileKind::Scene => of_scene(args, sources),
+        FileKind::Shader => {
+            let message = format!("`{}` is a shader, and only graphs have plans", args.graph.display());
+            Err(Diagnostic::error(Code::USAGE, message).into())
+        }
+    }
+}
+
+/// The plan of a graph by itself, for a stand-in scene.
+fn of_graph(args: &PlanArgs, sources: &mut Sources) -> Result<(Plan, Diagnostics), Diagnostics> {
+    // Also one that the program carries, by its name alone.
+    let loaded = program::load(&DiskFiles, sources, &name(&args.graph), None);
+    let mut found = loaded.diagnostics;
+    let Some(program) = loaded.program else { return Err(found) };
+    let typed = |(path, value): &(String, String)| Given {
+        path: path.clone(),
+        raw: Raw::Text(value.clone()),
+        span: None,
+    };
+    let given: Vec<Given> = args.set.iter().map(typed).collect();
+    let mut request = check::stand_in(&program);
+    request.params = resolve(&given, &program, &mut found);
+    request.viewport = args.size.unwrap_or(request.viewport);
+    if found.has_errors() {
+        return Err(found);
+    }
+    match plan::instantiate_stand_in(&program, &request) {
+        Ok(plan) => {
+            found.extend(plan.warnings.clone());
+            Ok((plan, found))
+        }
+        Err(errors) => {
+            found.extend(errors);
+            Err(found)
+        }
+    }
+}
+
+/// The plan of a scene's graph, for what the scene has.
+fn of_scene(args: &PlanArgs, sources: &mut Sources) -> Result<(Plan, Diagnostics), Diagnostics> {
+    let job = Job { source: args.graph.clone(), size: args.size, set: args.set.clone(), ..Job::default() };
+    let loaded = load(&DiskFiles, sources, &job, &mut Cache::default());
+    let mut found = loaded.diagnostics;
+    let Some(content) = loaded.content else { return Err(found) };
+    let request = content.request(wgpu_types::Features::all(), wgpu_types::Limits::default(), &BTreeMap::new());
+    let plan = plan::instantiate(&content.program, &request)?;
+    found.extend(plan.warnings.clone());
+    Ok((plan, found))
+}

@@ -1,0 +1,80 @@
+//! What `render`, `watch` and `bench` share: from arguments to a job and a device.
+
+use std::path::PathBuf;
+use std::thread::{self, JoinHandle};
+
+use super::args::{SceneArgs, WhenArgs};
+use crate::diagnostic::{Code, Diagnostic};
+use crate::engine::{Gpu, GpuOptions};
+use crate::host::{Job, Moment};
+
+/// What the arguments ask to see.
+pub fn job(args: &SceneArgs) -> Job {
+    Job {
+        source: args.scene.clone(),
+        graph: args.graph.clone(),
+        particles: args.particles.clone(),
+        radius_m: args.radius,
+        size: args.size,
+        set: args.set.clone(),
+        eye: args.eye,
+        target: args.target,
+        fov_degrees: args.fov,
+        transparent: false,
+        roots: Vec::new(),
+    }
+}
+
+pub fn moment(when: WhenArgs) -> Moment {
+    match (when.frame, when.time) {
+        (_, Some(time)) => Moment::at_time(time),
+        (Some(frame), None) => Moment::at_frame(frame),
+        (None, None) => Moment::default(),
+    }
+}
+
+/// A device that is being opened while files are read.
+#[derive(Debug)]
+pub struct Opening(JoinHandle<Result<Gpu, Diagnostic>>);
+
+impl Opening {
+    pub fn begin(backend: Option<&str>) -> Self {
+        let options = GpuOptions { backend: backend.map(str::to_owned), ..GpuOptions::default() };
+        Self(thread::spawn(move || Gpu::open(&options)))
+    }
+
+    /// # Errors
+    /// If no adapter is usable.
+    pub fn wait(self) -> Result<Gpu, Diagnostic> {
+        self.0.join().unwrap_or_else(|_| {
+            Err(Diagnostic::error(Code::DEVICE, "no usable graphics adapter: opening one failed")
+                .hint("another may work: `--backend NAME`"))
+        })
+    }
+}
+
+/// The name of the picture of a frame: `{}` in the name, or before its extension, the number.
+pub fn numbered(path: &std::path::Path, frame: u64) -> PathBuf {
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    let number = format!("{frame:04}");
+    let numbered = match name.split_once("{}") {
+        Some((before, after)) => format!("{before}{number}{after}"),
+        None => match name.rsplit_once('.') {
+            Some((stem, end)) => format!("{stem}_{number}.{end}"),
+            None => format!("{name}_{number}"),
+        },
+    };
+    path.with_file_name(numbered)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::path::Path;
+
+    #[test]
+    fn frames_are_numbered() {
+        assert_eq!(numbered(Path::new("out/a.png"), 7), Path::new("out/a_0007.png"));
+        assert_eq!(numbered(Path::new("out/{}-a.png"), 12345), Path::new("out/12345-a.png"));
+    }
+}
