@@ -6,7 +6,8 @@
 mod variants;
 
 use crate::diagnostic::{Code, Diagnostic, Diagnostics, Severity};
-use crate::plan::{self, model::Plan};
+use crate::plan;
+use crate::plan::model::{Plan, Request};
 use crate::program::Program;
 
 /// Everything that is wrong with a program, and what is odd about it in every variant.
@@ -47,6 +48,12 @@ pub fn check(program: &Program) -> Diagnostics {
         found.push(diagnostic);
     }
     found
+}
+
+/// The scene that programs are checked with: it has everything that the graph asks for, also what
+/// is optional.
+pub fn stand_in(program: &Program) -> Request {
+    variants::base(program)
 }
 
 /// Warnings of a plan, and its culled passes: the same pass in a loop or in a part used twice

@@ -154,9 +154,6 @@ pub struct PlanArgs {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum PlanFormat {
     Text,
-    Json,
-    Dot,
-    Svg,
 }
 
 #[derive(Args, Clone, Debug)]

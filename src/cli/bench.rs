@@ -109,9 +109,7 @@ fn table(m: &Measured) -> String {
 
 fn as_json(m: &Measured) -> serde_json::Value {
     let times = |values: &[f64]| json!({"median_ms": quantile(values, 0.5), "p99_ms": quantile(values, 0.99)});
-    let passes: Vec<_> = (m.passes.iter())
-        .map(|(name, values)| json!({"pass": name, "gpu": times(values)}))
-        .collect();
+    let passes: Vec<_> = (m.passes.iter()).map(|(name, values)| json!({"pass": name, "gpu": times(values)})).collect();
     json!({
         "adapter": m.adapter, "frames": m.frames, "passes": passes, "gpu": times(&m.gpu_ms), "encode": times(&m.encode_ms),
         "memory": {"held_bytes": m.memory_bytes, "unshared_bytes": m.unshared_bytes, "lower_bound_bytes": m.lower_bound_bytes},

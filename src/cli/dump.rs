@@ -45,7 +45,10 @@ pub fn parse(given: &[(String, String)]) -> Result<Vec<Asked>, Diagnostics> {
         match format {
             Some(format) => asked.push(Asked { path: path.clone(), file, format }),
             None => {
-                let message = format!("`{}`: textures are written as .png or .exr, buffers as .ply, .obj, .csv, .json or .bin", file.display());
+                let message = format!(
+                    "`{}`: textures are written as .png or .exr, buffers as .ply, .obj, .csv, .json or .bin",
+                    file.display()
+                );
                 found.push(Diagnostic::error(Code::USAGE, message));
             }
         }
@@ -88,9 +91,12 @@ impl Dump {
             }
             (Format::Items(format), ObjectKind::Buffer(buffer)) => items(session, object, buffer, format)?,
             (_, ObjectKind::Texture(_)) => Err("it is a texture, which is written as .png or .exr".into()),
-            (_, ObjectKind::Buffer(_)) => Err("it is a buffer, which is written as .ply, .obj, .csv, .json or .bin".into()),
+            (_, ObjectKind::Buffer(_)) => {
+                Err("it is a buffer, which is written as .ply, .obj, .csv, .json or .bin".into())
+            }
         };
-        let refuse = |why: String| Diagnostic::error(Code::USAGE, format!("`{}` cannot be dumped so: {why}", self.path));
+        let refuse =
+            |why: String| Diagnostic::error(Code::USAGE, format!("`{}` cannot be dumped so: {why}", self.path));
         self.output.write(&bytes.map_err(refuse)?)?;
         Ok(notes)
     }

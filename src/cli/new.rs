@@ -63,7 +63,9 @@ fn write(files: &[(PathBuf, String)]) -> Result<(), Diagnostics> {
             let mut file = OpenOptions::new().write(true).create_new(true).open(path)?;
             file.write_all(text.as_bytes())
         });
-        made.map_err(|error| Diagnostic::error(Code::OUTPUT, format!("`{}` cannot be written: {error}", path.display())))?;
+        made.map_err(|error| {
+            Diagnostic::error(Code::OUTPUT, format!("`{}` cannot be written: {error}", path.display()))
+        })?;
     }
     Ok(())
 }

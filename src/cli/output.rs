@@ -22,7 +22,8 @@ impl Output {
     /// # Errors
     /// If `path` is a folder, or a file cannot be made beside it.
     pub fn reserve(path: &Path) -> Result<Self, Diagnostic> {
-        let refuse = |why: &str| Diagnostic::error(Code::OUTPUT, format!("`{}` cannot be written: {why}", path.display()));
+        let refuse =
+            |why: &str| Diagnostic::error(Code::OUTPUT, format!("`{}` cannot be written: {why}", path.display()));
         let Some(name) = path.file_name() else { return Err(refuse("this names no file")) };
         if path.is_dir() {
             return Err(refuse("this is a folder").hint("give the name of a file in it"));
@@ -35,10 +36,6 @@ impl Output {
         let partial = folder.join(format!(".{}.{}.part", name.to_string_lossy(), std::process::id()));
         let file = File::create(&partial).map_err(|error| refuse(&error.to_string()))?;
         Ok(Self { path: path.to_owned(), partial, file: Some(file) })
-    }
-
-    pub fn path(&self) -> &Path {
-        &self.path
     }
 
     /// Writes everything and puts it in place of what was there.

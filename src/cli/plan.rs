@@ -20,9 +20,6 @@ pub fn run(args: &PlanArgs) -> Exit {
             let exit = report(&found, &sources);
             let text = match args.format {
                 PlanFormat::Text => printed::text(&plan),
-                PlanFormat::Json => printed::json(&plan),
-                PlanFormat::Dot => printed::dot(&plan),
-                PlanFormat::Svg => printed::svg(&plan),
             };
             match print(&text) {
                 Exit::Done => exit,
@@ -50,11 +47,8 @@ fn of_graph(args: &PlanArgs, sources: &mut Sources) -> Result<(Plan, Diagnostics
     let loaded = program::load(&DiskFiles, sources, &name(&args.graph), None);
     let mut found = loaded.diagnostics;
     let Some(program) = loaded.program else { return Err(found) };
-    let typed = |(path, value): &(String, String)| Given {
-        path: path.clone(),
-        raw: Raw::Text(value.clone()),
-        span: None,
-    };
+    let typed =
+        |(path, value): &(String, String)| Given { path: path.clone(), raw: Raw::Text(value.clone()), span: None };
     let given: Vec<Given> = args.set.iter().map(typed).collect();
     let mut request = check::stand_in(&program);
     request.params = resolve(&given, &program, &mut found);

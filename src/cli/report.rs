@@ -4,6 +4,7 @@ use std::io::{self, IsTerminal as _, Write as _};
 use std::process::ExitCode;
 
 use crate::diagnostic::{Code, Diagnostic, Diagnostics, Severity, Sources, Style, render_all};
+use crate::engine::is_device_gone;
 
 /// How a command ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -46,7 +47,7 @@ impl Exit {
 
     fn of_error(error: &Diagnostic) -> Self {
         match error.id {
-            Code::DEVICE => Exit::Device,
+            _ if is_device_gone(error) => Exit::Device,
             Code::ASSET | Code::OUTPUT | Code::USAGE => Exit::Usage,
             Code::FILE_MISSING | Code::FILE_UNREADABLE if error.labels.is_empty() => Exit::Usage,
             _ => Exit::Findings,
@@ -100,7 +101,8 @@ mod tests {
         let asset = || Diagnostic::error(Code::ASSET, "a");
         let named = || Diagnostic::error(Code::FILE_MISSING, "b").at(Span::new(FileId(0), 0, 0), "here");
         let loose = || Diagnostic::error(Code::FILE_MISSING, "c");
-        let device = || Diagnostic::error(Code::DEVICE, "d");
+        let device = || Diagnostic::error(Code::DEVICE, "the device was lost: d");
+        let refused = || Diagnostic::error(Code::DEVICE, "the device refused d");
         let note = || Diagnostic::warning(Code::UNUSED, "e");
         let exit = |list: Vec<Diagnostic>| Exit::of(&Diagnostics(list));
         assert_eq!(exit(vec![]), Exit::Done);
@@ -109,5 +111,6 @@ mod tests {
         assert_eq!(exit(vec![named()]), Exit::Findings);
         assert_eq!(exit(vec![asset(), named()]), Exit::Findings);
         assert_eq!(exit(vec![named(), device()]), Exit::Device);
+        assert_eq!(exit(vec![refused()]), Exit::Findings);
     }
 }

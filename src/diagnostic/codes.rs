@@ -133,6 +133,8 @@ codes! {
     ASSET_NOTE = "asset-note";
 
     // Running
+    /// Arguments that ask for something impossible.
+    USAGE = "usage";
     /// A counted buffer had too little room.
     OVERFLOW = "overflow";
     /// The device refused or was lost.

@@ -152,7 +152,8 @@ fn decode_image(path: &Path, bytes: &[u8]) -> Result<(Asset, Diagnostics), Diagn
     })?;
     let mut found = Diagnostics::new();
     if image.clipped > 0 {
-        let clipped = format!("`{}`: {} texels are brighter than 65504 and were clipped", path.display(), image.clipped);
+        let clipped =
+            format!("`{}`: {} texels are brighter than 65504 and were clipped", path.display(), image.clipped);
         found.push(Diagnostic::note(Code::ASSET_NOTE, clipped));
     }
     Ok((Asset::Image(Arc::new(image)), found))

@@ -8,7 +8,7 @@ use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::engine::{Engine, Gpu, Runner, packing};
 use crate::graph::value::Value;
 use crate::plan;
-use crate::plan::model::{ObjectKind, ObjectRef, Origin, Plan, Texture};
+use crate::plan::model::{Object, ObjectId, ObjectKind, ObjectRef, Origin, Plan, Texture};
 use crate::scene::convert;
 use crate::shader::reflect::Type;
 
@@ -71,8 +71,8 @@ impl Session {
             }
         };
         let before = self.content.take();
-        let uploaded = upload(&self.engine, &mut graph, &content.inputs, before.as_ref().map(|c| &c.inputs))
-            .and_then(|()| {
+        let uploaded =
+            upload(&self.engine, &mut graph, &content.inputs, before.as_ref().map(|c| &c.inputs)).and_then(|()| {
                 let before = before.as_ref().map(|c| &c.present_inputs);
                 upload(&self.engine, &mut present, &content.present_inputs, before)
             });
@@ -94,10 +94,11 @@ impl Session {
         let gpu = self.engine.gpu();
         check_size(content.viewport, &gpu.limits())?;
         let request = content.request(gpu.features(), gpu.limits(), &self.capacities);
-        let plan = plan::instantiate(&content.program, &request)?;
-        let color = picture(&plan)?.clone();
+        let mut plan = plan::instantiate(&content.program, &request)?;
+        let (id, color) = picture(&plan)?;
         let request = content.present_request(color, gpu.features(), gpu.limits());
         let present = plan::instantiate(&content.present, &request)?;
+        share_usages(&mut plan, id, &present);
         Ok((plan, present))
     }
 
@@ -118,8 +119,23 @@ fn check_size(viewport: [u32; 2], limits: &wgpu_types::Limits) -> Result<(), Dia
     Err(Diagnostic::error(Code::USAGE, message))
 }
 
+/// The picture is made for what the presenting graph does with it, too.
+fn share_usages(plan: &mut Plan, id: ObjectId, present: &Plan) {
+    let color = present.objects.iter().find(|o| is_color(o));
+    if let (ObjectKind::Texture(texture), Some(ObjectKind::Texture(asked))) =
+        (&mut plan.objects[id].kind, color.map(|o| &o.kind))
+    {
+        texture.usages |= asked.usages;
+    }
+}
+
+/// Whether an object of the presenting graph is the picture that it takes.
+pub(super) fn is_color(object: &Object) -> bool {
+    matches!(&object.origin, Origin::Input(name) if name == COLOR)
+}
+
 /// The first output, which is the picture.
-fn picture(plan: &Plan) -> Result<&Texture, Diagnostic> {
+fn picture(plan: &Plan) -> Result<(ObjectId, Texture), Diagnostic> {
     let path = plan.graph.display();
     let Some(output) = plan.outputs.first() else {
         return Err(Diagnostic::error(Code::WRONG_KIND, format!("`{path}` has no output to show")));
@@ -128,9 +144,9 @@ fn picture(plan: &Plan) -> Result<&Texture, Diagnostic> {
         ObjectRef::Fixed(id) => Some(id),
         ObjectRef::Ring { ring, index } => plan.rings.get(ring).and_then(|r| r.objects.get(index)).copied(),
     };
-    match object.and_then(|id| plan.objects.get(id)) {
-        Some(object) => match &object.kind {
-            ObjectKind::Texture(texture) if texture.layers == 1 && !texture.is_3d => Ok(texture),
+    match object.and_then(|id| Some((id, plan.objects.get(id)?))) {
+        Some((id, object)) => match &object.kind {
+            ObjectKind::Texture(texture) if texture.layers == 1 && !texture.is_3d => Ok((id, texture.clone())),
             _ => {
                 let message = format!("the first output of `{path}` is the picture, and `{}` is none", output.name);
                 Err(Diagnostic::error(Code::WRONG_KIND, message).at(object.span, "this is no 2D texture"))
@@ -198,9 +214,11 @@ fn table(rows: &[BTreeMap<String, Value>], item: Option<&Type>, stride: u32) -> 
     let mut bytes = vec![0; rows.len() * stride as usize];
     for (index, (row, out)) in rows.iter().zip(bytes.chunks_exact_mut(stride.max(1) as usize)).enumerate() {
         for member in members {
-            let value = row.get(&member.name).ok_or_else(|| format!("row {index} lacks `{}` of `{name}`", member.name))?;
+            let value =
+                row.get(&member.name).ok_or_else(|| format!("row {index} lacks `{}` of `{name}`", member.name))?;
             let place = out.get_mut(member.offset as usize..).unwrap_or_default();
-            packing::encode(value, &member.ty, place).map_err(|why| format!("row {index}, `{}`: {why}", member.name))?;
+            packing::encode(value, &member.ty, place)
+                .map_err(|why| format!("row {index}, `{}`: {why}", member.name))?;
         }
         if let Some(other) = row.keys().find(|key| members.iter().all(|m| m.name != **key)) {
             return Err(format!("row {index} has `{other}`, which `{name}` has not"));

@@ -3,14 +3,14 @@
 use std::collections::BTreeMap;
 use std::time::Instant;
 
-use super::build::Session;
+use super::build::{Session, is_color};
 use super::inputs::Input;
-use super::load::{COLOR, Content};
+use super::load::Content;
 use super::picture::Texels;
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::engine::{Frame, Report, Runner, TextureData};
 use crate::graph::value::Value;
-use crate::plan::model::{ObjectKind, ObjectRef, Origin, Plan};
+use crate::plan::model::{ObjectKind, ObjectRef, Plan};
 
 /// Frames a second, where nobody says.
 const FRAMES_PER_SECOND: f64 = 60.0;
@@ -109,8 +109,8 @@ impl Session {
             return Err(nothing().into());
         };
         let live = live_values(content, &content.present_inputs);
-        let color = |o: &crate::plan::model::Object| matches!(&o.origin, Origin::Input(name) if name == COLOR);
-        if let (Some(input), Some(output)) = (present.plan().objects.iter().position(color), graph.plan().outputs.first()) {
+        let input = present.plan().objects.iter().position(is_color);
+        if let (Some(input), Some(output)) = (input, graph.plan().outputs.first()) {
             present.share(input, graph, output.object)?;
         }
         let frame = Frame {
@@ -139,7 +139,9 @@ impl Session {
                 let wanted = u64::from(raw) + u64::from(raw) / 8;
                 self.capacities.insert(path.clone(), wanted);
                 let message = format!("`{path}` had room for {room} items, and {raw} came: the frame was repeated");
-                notes.push(Diagnostic::note(Code::OVERFLOW, message).hint("raise its capacity in the graph to save the time"));
+                notes.push(
+                    Diagnostic::note(Code::OVERFLOW, message).hint("raise its capacity in the graph to save the time"),
+                );
                 grown = true;
             }
         }

@@ -77,7 +77,9 @@ pub fn write(items: &Items<'_>, kind: DumpKind) -> Result<Vec<u8>, String> {
 
 fn columns(items: &Items<'_>) -> Vec<Column> {
     let Some(ty) = items.item else {
-        return (0..items.stride as u32 / 4).map(|i| Column { name: format!("u{i}"), lane: (i * 4, Scalar::U32) }).collect();
+        return (0..items.stride as u32 / 4)
+            .map(|i| Column { name: format!("u{i}"), lane: (i * 4, Scalar::U32) })
+            .collect();
     };
     let names = names(ty, "");
     let named = names.into_iter().zip(lanes(ty));
@@ -89,10 +91,13 @@ fn names(ty: &Type, prefix: &str) -> Vec<String> {
     let below = |name: &str| if prefix.is_empty() { name.to_owned() } else { format!("{prefix}.{name}") };
     match ty {
         Type::Scalar(_) | Type::Atomic(_) => vec![prefix.to_owned()],
-        Type::Vector { components, .. } => ["x", "y", "z", "w"].iter().take(*components as usize).map(|c| below(c)).collect(),
-        Type::Matrix { columns, rows, .. } => {
-            (0..*columns).flat_map(|c| (0..*rows).map(move |r| (c, r))).map(|(c, r)| below(&format!("{c}.{r}"))).collect()
+        Type::Vector { components, .. } => {
+            ["x", "y", "z", "w"].iter().take(*components as usize).map(|c| below(c)).collect()
         }
+        Type::Matrix { columns, rows, .. } => (0..*columns)
+            .flat_map(|c| (0..*rows).map(move |r| (c, r)))
+            .map(|(c, r)| below(&format!("{c}.{r}")))
+            .collect(),
         Type::Array { element, count, .. } => {
             (0..count.unwrap_or(0)).flat_map(|i| names(element, &below(&i.to_string()))).collect()
         }
@@ -116,7 +121,9 @@ fn position(items: &Items<'_>) -> Result<[Lane; 3], String> {
         all.get(..3)?.try_into().ok().filter(|l: &[Lane; 3]| l.iter().all(|(_, s)| *s == Scalar::F32))
     });
     found.ok_or_else(|| {
-        let what = items.item.map_or_else(|| "items of an unknown type".to_owned(), |ty| format!("items of type `{}`", ty.wgsl()));
+        let what = items
+            .item
+            .map_or_else(|| "items of an unknown type".to_owned(), |ty| format!("items of type `{}`", ty.wgsl()));
         format!("{what} have no `position`")
     })
 }
@@ -124,7 +131,9 @@ fn position(items: &Items<'_>) -> Result<[Lane; 3], String> {
 fn is_triple(ty: &Type) -> bool {
     match ty {
         Type::Vector { components, .. } => *components >= 3,
-        Type::Struct { members, .. } => members.len() >= 3 && ["x", "y", "z"].iter().zip(members).all(|(n, m)| *n == m.name),
+        Type::Struct { members, .. } => {
+            members.len() >= 3 && ["x", "y", "z"].iter().zip(members).all(|(n, m)| *n == m.name)
+        }
         _ => false,
     }
 }

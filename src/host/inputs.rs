@@ -40,8 +40,7 @@ pub(super) struct ParticleFile {
 
 /// Everything that a scene and the command line offer, files perhaps still being decoded.
 #[derive(Debug)]
-pub(super) struct Offer<'a> {
-    pub scene: &'a Scene,
+pub(super) struct Offer {
     pub particles: Vec<ParticleFile>,
     pub images: Vec<(String, Pending)>,
 }
@@ -55,7 +54,7 @@ pub(super) struct Decoded {
     failed: Vec<String>,
 }
 
-impl Offer<'_> {
+impl Offer {
     /// Waits for all files.
     pub fn decode(self, graph: Option<&Graph>, cache: &mut Cache, diagnostics: &mut Diagnostics) -> Decoded {
         let mut decoded = Decoded::default();
@@ -162,7 +161,8 @@ fn missing(declared: &Declared, graph: &Graph, scene: &Scene) -> Option<Diagnost
     let items = scene.items();
     let other = items.iter().find(|(_, item)| item.value == *name);
     if let Some((found, item)) = other {
-        let message = format!("input `{name}` of `{}` is {kind}, and the scene's `{name}` is not", graph.path.display());
+        let message =
+            format!("input `{name}` of `{}` is {kind}, and the scene's `{name}` is not", graph.path.display());
         let error = Diagnostic::error(Code::WRONG_KIND, message).at(item.span, format!("this is under {found}"));
         return Some(error.see(declared.span, format!("{kind} is declared here")));
     }

@@ -16,7 +16,7 @@ use crate::files::{self, Files, Kind};
 use crate::graph::value::Value;
 use crate::plan::model::{InputInfo, Request, Texture};
 use crate::program::{self, Program, missing_file};
-use crate::scene::{Camera, Item, Scene, framing, particles};
+use crate::scene::{Camera, Item, Scene, framing};
 
 /// The graph that turns light into a picture.
 const PRESENT: &str = "parts/present.ron";
@@ -101,7 +101,7 @@ impl Loader<'_> {
         let source = source::read(self.files, &self.job.source, self.sources, &mut self.diagnostics)?;
         let scene = source.scene;
         // Files decode on other threads while the graphs are read.
-        let offer = Offer { scene: &scene, particles: self.particles(&scene, source.particles), images: self.images(&scene) };
+        let offer = Offer { particles: self.particles(&scene, source.particles), images: self.images(&scene) };
         let program = self.graph(&scene);
         let present = self.program(PRESENT, Some(&scene.path));
         let root = program.as_ref().map(|p| &*p.root);
@@ -161,7 +161,9 @@ impl Loader<'_> {
             // The one file on the command line takes the place of the scene's one.
             let same = replaced.as_deref().is_none_or(|name| name == item.name.value);
             let is_replaced = file.is_some() && same && (replaced.is_some() || scene.particles.len() == 1);
-            if !is_replaced && let Some(bytes) = self.asset(&item.value.file.value, Some(&scene.path), item.value.file.span) {
+            if !is_replaced
+                && let Some(bytes) = self.asset(&item.value.file.value, Some(&scene.path), item.value.file.span)
+            {
                 let said = self.job.radius_m.or(item.value.radius_m.as_ref().map(|r| r.value));
                 let at = Some(item.value.file.span);
                 list.push(self.particle_file(Some(item.name.value.clone()), bytes.0, bytes.1, said, at));
@@ -321,8 +323,3 @@ impl Content {
 
 /// The presenting graph's input for the picture.
 pub(super) const COLOR: &str = "color";
-
-/// Whether a file is one that [`load`] takes, by its name.
-pub fn is_renderable(path: &Path) -> bool {
-    source::is_scene(path) || particles::known_extension(path)
-}

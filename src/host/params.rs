@@ -137,7 +137,11 @@ fn finite(text: &str) -> Option<f64> {
 
 fn numbers_of(kind: &ParamKind) -> String {
     let (low, high) = components(kind);
-    if low == high { format!("{low} numbers with commas between") } else { format!("{low} or {high} numbers with commas between") }
+    if low == high {
+        format!("{low} numbers with commas between")
+    } else {
+        format!("{low} or {high} numbers with commas between")
+    }
 }
 
 fn components(kind: &ParamKind) -> (usize, usize) {

@@ -59,11 +59,7 @@ impl Watch {
     ///
     /// # Errors
     /// If a folder cannot be watched; the set stays in part as it was.
-    pub fn set<'a>(
-        &mut self,
-        paths: impl IntoIterator<Item = &'a Path>,
-        read_since: SystemTime,
-    ) -> notify::Result<()> {
+    pub fn set<'a>(&mut self, paths: impl IntoIterator<Item = &'a Path>, read_since: SystemTime) -> notify::Result<()> {
         let mut files = BTreeSet::new();
         for path in paths.into_iter().filter(|path| !path.starts_with(LIBRARY)) {
             files.insert(absolute(path));
@@ -113,7 +109,11 @@ impl Watch {
                 }
             }
         }
-        Ok(first.map(|first| Change { noticing: noticing(&changed, first), files: changed.into_iter().collect(), first }))
+        Ok(first.map(|first| Change {
+            noticing: noticing(&changed, first),
+            files: changed.into_iter().collect(),
+            first,
+        }))
     }
 
     /// Which files of the set an event may concern: those it names, and all below a folder that

@@ -115,11 +115,7 @@ mod tests {
             ty: Type::Scalar(Scalar::F32),
             span: Span::new(FileId(0), 0, 0),
         };
-        Type::Struct {
-            name: "Packed3".into(),
-            members: vec![member("x", 0), member("y", 4), member("z", 8)],
-            size: 12,
-        }
+        Type::Struct { name: "Packed3".into(), members: vec![member("x", 0), member("y", 4), member("z", 8)], size: 12 }
     }
 
     #[test]

@@ -139,11 +139,8 @@ impl Reader<'_> {
             Some(n) => self.decoder.float(n, "`intensity`"),
             None => Some(1.0),
         };
-        let light = Light {
-            direction: DVec3::from_array(direction?),
-            color: DVec3::from_array(color?),
-            intensity: intensity?,
-        };
+        let light =
+            Light { direction: DVec3::from_array(direction?), color: DVec3::from_array(color?), intensity: intensity? };
         self.sound(light.fault(), fields.head)?;
         Some(light)
     }
