@@ -9,19 +9,29 @@ struct Params {
     absorption: vec3f,
     refractions: u32,
     secant_steps: u32,
+    march_steps: u32,
     reach_m: f32,
     contact_m: f32,
 }
 
 var<uniform> params: Params;
-var shell_z: texture_2d_array<f32>;
+// Front and back of all particles.
+var layers: texture_2d<f32>;
 var smooth_normal: texture_2d_array<f32>;
+var raw: texture_storage_2d<rgba16float, write>;
 
-@fragment
-fn liquid(@builtin(position) position: vec4f) -> @location(0) vec4f {
-    let pixel = position.xy;
-    let texel = vec2i(pixel);
-    let z = textureLoad(shell_z, texel, 0, 0).x;
+@compute @workgroup_size(8, 8)
+fn liquid(@builtin(global_invocation_id) id: vec3u) {
+    let texel = vec2i(id.xy);
+    if all(texel < vec2i(textureDimensions(raw))) {
+        textureStore(raw, texel, seen(texel));
+    }
+}
+
+/// Premultiplied colour of a pixel: the dry scene where it hides the liquid or there is none.
+fn seen(texel: vec2i) -> vec4f {
+    let pixel = vec2f(texel) + 0.5;
+    let z = textureLoad(layers, texel, 0).x;
     let dry = textureLoad(dry_z, texel, 0).x;
     if z == 0.0 || (dry != 0.0 && dry > z) {
         return textureLoad(dry_color, texel, 0);
@@ -33,24 +43,23 @@ fn liquid(@builtin(position) position: vec4f) -> @location(0) vec4f {
 fn seen_through(start: vec3f, view: vec3f, pixel: vec2f) -> vec3f {
     let outside = facing(layer_normal(smooth_normal, linear_clamp, 0, pixel), view);
     let into = bend_in(view, outside, params.ior);
-    var light = into.reflectance * background(start, reflect(view, outside), params.reach_m);
-    let back = leave_shell(shell_z, start, into.direction, params.reach_m, params.secant_steps);
+    var rays: Rays;
+    add_ray(&rays, start, reflect(view, outside), vec3f(into.reflectance));
+    let back = leave_shell(layers, BODY, start, into.direction, params.reach_m, params.secant_steps);
     let p = start + back.t * into.direction;
+    var direction = into.direction;
     var share = (1.0 - into.reflectance) * transmitted(params.absorption, back.t);
-    if params.refractions == 1u {
-        return light + share * background(p, into.direction, params.reach_m);
-    }
-    // Liquid that rests on something wets it: no air between, no second surface.
-    let wet = smoothstep(params.contact_m, 0.5 * params.contact_m, dry_distance(p, back.pixel));
-    if wet > 0.0 {
-        light += share * wet * dry_over_sky(back.pixel, into.direction);
+    if params.refractions > 1u {
+        // Liquid that rests on something wets it: no air between, no second surface.
+        let wet = smoothstep(params.contact_m, 0.5 * params.contact_m, dry_distance(p, back.pixel));
+        add_ray(&rays, p, direction, share * wet);
         share *= 1.0 - wet;
+        let inside = facing(layer_normal(smooth_normal, linear_clamp, 1, back.pixel), direction);
+        let out = bend_out(direction, inside, params.ior);
+        add_ray(&rays, p, reflect(direction, inside), share * out.reflectance);
+        direction = out.direction;
+        share *= 1.0 - out.reflectance;
     }
-    let inside = facing(layer_normal(smooth_normal, linear_clamp, 1, back.pixel), into.direction);
-    let out = bend_out(into.direction, inside, params.ior);
-    light += share * out.reflectance * background(p, reflect(into.direction, inside), params.reach_m);
-    if out.reflectance < 1.0 {
-        light += share * (1.0 - out.reflectance) * background(p, out.direction, params.reach_m);
-    }
-    return light;
+    add_ray(&rays, p, direction, share);
+    return gathered(&rays, params.reach_m, params.march_steps);
 }

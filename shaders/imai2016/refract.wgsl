@@ -16,158 +16,125 @@ struct Params {
     shapes_splash_radius: f32,
 }
 
-const BOUNCE_STEPS = 16u;
-
-/// Where a ray is, on a surface of the body or of the splashes.
-struct Place {
-    found: bool,
-    t: f32,
-    pixel: vec2f,
-    in_body: bool,
-    // Outward, in eye space.
-    normal: vec3f,
-}
-
 var<uniform> params: Params;
-var body_z: texture_2d_array<f32>;
+// Front and back of the body, front and back of the splashes.
+var layers: texture_2d<f32>;
 var smooth_normal: texture_2d_array<f32>;
-var splash_z: texture_2d_array<f32>;
+var raw: texture_storage_2d<rgba16float, write>;
 var splash_normal: texture_2d_array<f32>;
 
-@fragment
-fn liquid(@builtin(position) position: vec4f) -> @location(0) vec4f {
-    let pixel = position.xy;
-    let texel = vec2i(pixel);
-    let first = first_surface(pixel);
+@compute @workgroup_size(8, 8)
+fn liquid(@builtin(global_invocation_id) id: vec3u) {
+    let texel = vec2i(id.xy);
+    if all(texel < vec2i(textureDimensions(raw))) {
+        textureStore(raw, texel, seen(texel));
+    }
+}
+
+/// Premultiplied colour of a pixel: the dry scene where it hides the liquid or there is none.
+fn seen(texel: vec2i) -> vec4f {
+    let pixel = vec2f(texel) + 0.5;
+    let z = textureLoad(layers, texel, 0);
+    // The nearer of the fronts; 0 is nothing.
+    let in_body = z.x != 0.0 && (z.z == 0.0 || z.x >= z.z);
+    let front = select(z.z, z.x, in_body);
     let dry = textureLoad(dry_z, texel, 0).x;
-    if !first.found || (dry != 0.0 && dry > -first.t) {
+    if front == 0.0 || (dry != 0.0 && dry > front) {
         return textureLoad(dry_color, texel, 0);
     }
-    let ray = eye_ray(pixel);
-    let p = ray.origin + first.t * ray.direction;
-    return vec4f(seen_through(p, normalize(ray.direction), first), 1.0);
-}
-
-/// The nearer front of both classes on a view ray; t is -z.
-fn first_surface(pixel: vec2f) -> Place {
-    let texel = vec2i(pixel);
-    let body = textureLoad(body_z, texel, 0, 0).x;
-    let splash = textureLoad(splash_z, texel, 0, 0).x;
-    if body == 0.0 && splash == 0.0 {
-        return Place();
-    }
-    let in_body = body != 0.0 && (splash == 0.0 || body >= splash);
-    return Place(true, -select(splash, body, in_body), pixel, in_body, normal_at(in_body, 0, pixel));
-}
-
-fn normal_at(in_body: bool, layer: i32, pixel: vec2f) -> vec3f {
-    if in_body {
-        return layer_normal(smooth_normal, linear_clamp, layer, pixel);
-    }
-    return layer_normal(splash_normal, linear_clamp, layer, pixel);
+    let first = Crossing(true, select(SPLASH, BODY, in_body), 0.0, pixel);
+    return vec4f(seen_through(eye_from_pixel(pixel, front), normalize(eye_ray(pixel).direction), first), 1.0);
 }
 
 /// Equations 6 to 8 as a loop over pairs of surfaces, from where the view ray meets the liquid.
-fn seen_through(start: vec3f, view: vec3f, first: Place) -> vec3f {
+fn seen_through(start: vec3f, view: vec3f, first: Crossing) -> vec3f {
     var p = start;
     var direction = view;
     var at = first;
-    var light = vec3f(0.0);
     var share = vec3f(1.0);
+    var rays: Rays;
     for (var entered = 1u; entered <= params.refractions; entered += 2u) {
-        let outside = facing(at.normal, direction);
+        let normal = normal_at(at.shell, 0, at.pixel);
+        let outside = facing(normal, direction);
         let into = bend_in(direction, outside, params.ior);
-        light += share * into.reflectance * background(p, reflect(direction, outside), params.reach_m);
-        share *= 1.0 - into.reflectance;
+        add_ray(&rays, p, reflect(direction, outside), share * into.reflectance);
         direction = into.direction;
 
-        at = way_out(p, direction, at);
+        let in_body = at.shell == BODY;
+        let reach = select(SPHERE_REACH * params.shapes_splash_radius, params.reach_m, in_body);
+        at = leave_shell(layers, at.shell, p, direction, reach, params.secant_steps);
+        if !in_body {
+            at = leave_sphere(at, p, direction, normal, params.shapes_splash_radius);
+        }
         p += at.t * direction;
-        share *= transmitted(params.absorption, at.t);
+        share *= (1.0 - into.reflectance) * transmitted(params.absorption, at.t);
         if entered == params.refractions {
             break;
         }
         // Liquid that rests on something wets it: no air between, no second surface.
         let wet = smoothstep(params.contact_m, 0.5 * params.contact_m, dry_distance(p, at.pixel));
-        if wet > 0.0 {
-            light += share * wet * dry_over_sky(at.pixel, direction);
-            share *= 1.0 - wet;
-        }
+        add_ray(&rays, p, direction, share * wet);
+        share *= 1.0 - wet;
         if wet == 1.0 {
-            return light;
+            break;
         }
-        let inside = facing(at.normal, direction);
+        var back = normal_at(at.shell, 1, at.pixel);
+        if !in_body && !at.found {
+            back = normalize(params.shapes_splash_radius * normal + at.t * direction);
+        }
+        let inside = facing(back, direction);
         let out = bend_out(direction, inside, params.ior);
         if out.reflectance == 1.0 {
-            return light + share * thrown_back(p, out.direction, at.in_body);
+            let t = thrown_back(p, out.direction, at.shell);
+            direction = out.direction;
+            p += t * direction;
+            share *= transmitted(params.absorption, t);
+            break;
         }
-        light += share * out.reflectance * background(p, reflect(direction, inside), params.reach_m);
+        add_ray(&rays, p, reflect(direction, inside), share * out.reflectance);
         share *= 1.0 - out.reflectance;
         direction = out.direction;
 
         if entered + 2u > params.refractions {
             break;
         }
-        let next = way_in(p, direction);
+        let next = enter_shells(layers, p, direction, params.reach_m, params.march_steps, params.secant_steps);
         if !next.found {
             break;
         }
         at = next;
         p += at.t * direction;
     }
-    return light + share * background(p, direction, params.reach_m);
+    add_ray(&rays, p, direction, share);
+    return gathered(&rays, params.reach_m, params.march_steps);
 }
 
-/// Total reflection, which the paper leaves open: the ray goes on inside until it meets something dry or leaves the
-/// layer between front and back, and then straight on into the air.
-fn thrown_back(p: vec3f, direction: vec3f, in_body: bool) -> vec3f {
+fn normal_at(shell: u32, layer: i32, pixel: vec2f) -> vec3f {
+    if shell == BODY {
+        return layer_normal(smooth_normal, linear_clamp, layer, pixel);
+    }
+    return layer_normal(splash_normal, linear_clamp, layer, pixel);
+}
+
+/// Total reflection, which the paper leaves open: how far the ray goes on inside until it leaves the layer between
+/// front and back; from there it goes straight on into the air.
+fn thrown_back(p: vec3f, direction: vec3f, shell: u32) -> f32 {
     var t = 0.0;
-    for (var k = 1u; k <= BOUNCE_STEPS; k++) {
-        let share = f32(k) / f32(BOUNCE_STEPS);
+    for (var k = 1u; k <= params.march_steps; k++) {
+        let share = f32(k) / f32(params.march_steps);
         let next = params.reach_m * share * share;
         let q = p + next * direction;
         let pixel = pixel_from_eye(q);
         if q.z > -camera.near || !on_screen(pixel) {
             break;
         }
-        let texel = vec2i(pixel);
-        var ends = vec2f(textureLoad(splash_z, texel, 1, 0).x, textureLoad(splash_z, texel, 0, 0).x);
-        if in_body {
-            ends = vec2f(textureLoad(body_z, texel, 1, 0).x, textureLoad(body_z, texel, 0, 0).x);
-        }
+        let z = textureLoad(layers, vec2i(pixel), 0);
+        let ends = select(z.zw, z.xy, shell == BODY);
         // A little room behind the back, where the ray starts.
-        if ends.y == 0.0 || q.z > ends.y || q.z < ends.x - params.contact_m {
+        if ends.x == 0.0 || q.z > ends.x || q.z < ends.y - params.contact_m {
             break;
         }
         t = next;
     }
-    return transmitted(params.absorption, t) * background(p + t * direction, direction, params.reach_m);
-}
-
-/// From a point on the liquid's surface to the back of the same class.
-fn way_out(p: vec3f, direction: vec3f, from_place: Place) -> Place {
-    if from_place.in_body {
-        let back = leave_shell(body_z, p, direction, params.reach_m, params.secant_steps);
-        return Place(true, back.t, back.pixel, true, normal_at(true, 1, back.pixel));
-    }
-    let back = leave_sphere(splash_z, p, direction, from_place.normal, params.shapes_splash_radius, params.secant_steps);
-    if back.found {
-        return Place(true, back.t, back.pixel, false, normal_at(false, 1, back.pixel));
-    }
-    let normal = normalize(params.shapes_splash_radius * from_place.normal + back.t * direction);
-    return Place(true, back.t, back.pixel, false, normal);
-}
-
-/// The next front that a ray in the air meets, of either class.
-fn way_in(p: vec3f, direction: vec3f) -> Place {
-    let body = enter_shell(body_z, p, direction, params.reach_m, params.march_steps, params.secant_steps);
-    let splash = enter_shell(splash_z, p, direction, params.reach_m, params.march_steps, params.secant_steps);
-    if !body.found && !splash.found {
-        return Place();
-    }
-    let in_body = body.found && (!splash.found || body.t <= splash.t);
-    if in_body {
-        return Place(true, body.t, body.pixel, true, normal_at(true, 0, body.pixel));
-    }
-    return Place(true, splash.t, splash.pixel, false, normal_at(false, 0, splash.pixel));
+    return t;
 }

@@ -7,16 +7,24 @@ var dry_z: texture_2d<f32>;
 var sky_cube: texture_cube<f32>;
 var linear_clamp: sampler;
 
-const DRY_STEPS = 20u;
+/// Rays whose background is still to be added to the light: gathered first and followed in one place, which keeps
+/// shaders short to compile. Two pairs of surfaces give three each, and the last ray goes on.
+struct Rays {
+    count: u32,
+    p: array<vec3f, 7>,
+    direction: array<vec3f, 7>,
+    share: array<vec3f, 7>,
+}
+
+const RAYS_MAX = 7u;
 
 fn sky_towards(direction: vec3f) -> vec3f {
     return textureSampleLevel(sky_cube, linear_clamp, world_from_eye_vector(direction), 0.0).rgb;
 }
 
-/// The dry scene at a pixel (premultiplied) over the sky in a direction.
-fn dry_over_sky(pixel: vec2f, direction: vec3f) -> vec3f {
-    let dry = textureSampleLevel(dry_color, linear_clamp, pixel / camera.viewport, 0.0);
-    return dry.rgb + (1.0 - dry.a) * sky_towards(direction);
+/// The dry scene at a pixel, premultiplied.
+fn dry_at(pixel: vec2f) -> vec4f {
+    return textureSampleLevel(dry_color, linear_clamp, pixel / camera.viewport, 0.0);
 }
 
 fn dry_z_at(pixel: vec2f) -> f32 {
@@ -38,11 +46,11 @@ fn dry_distance(p: vec3f, pixel: vec2f) -> f32 {
 }
 
 /// Marches in growing steps until the ray is behind the dry scene, then halves the last step. All in eye space.
-fn background(p: vec3f, direction: vec3f, reach: f32) -> vec3f {
+fn background(p: vec3f, direction: vec3f, reach: f32, steps: u32) -> vec3f {
     var ends = vec2f(0.0);
     var found = false;
-    for (var k = 0u; k <= DRY_STEPS; k++) {
-        let share = f32(k) / f32(DRY_STEPS);
+    for (var k = 0u; k <= steps; k++) {
+        let share = f32(k) / f32(steps);
         let t = reach * share * share;
         let q = p + t * direction;
         let pixel = pixel_from_eye(q);
@@ -56,21 +64,40 @@ fn background(p: vec3f, direction: vec3f, reach: f32) -> vec3f {
             break;
         }
     }
-    if !found {
-        return sky_towards(direction);
+    var dry = vec4f(0.0);
+    if found {
+        let stride = ends.y - ends.x;
+        for (var k = 0u; k < steps / 3u; k++) {
+            let middle = 0.5 * (ends.x + ends.y);
+            let m = p + middle * direction;
+            let z = dry_z_at(pixel_from_eye(m));
+            ends = select(vec2f(middle, ends.y), vec2f(ends.x, middle), z != 0.0 && m.z <= z);
+        }
+        let hit = p + ends.y * direction;
+        let at = pixel_from_eye(hit);
+        // A ray that passes far behind something has not met it.
+        if dry_z_at(at) - hit.z <= 0.25 * stride + 0.01 * reach {
+            dry = dry_at(at);
+        }
     }
-    let stride = ends.y - ends.x;
-    for (var k = 0; k < 6; k++) {
-        let middle = 0.5 * (ends.x + ends.y);
-        let m = p + middle * direction;
-        let z = dry_z_at(pixel_from_eye(m));
-        ends = select(vec2f(middle, ends.y), vec2f(ends.x, middle), z != 0.0 && m.z <= z);
+    return dry.rgb + (1.0 - dry.a) * sky_towards(direction);
+}
+
+fn add_ray(rays: ptr<function, Rays>, p: vec3f, direction: vec3f, share: vec3f) {
+    let i = (*rays).count;
+    if any(share > vec3f(0.0)) && i < RAYS_MAX {
+        (*rays).p[i] = p;
+        (*rays).direction[i] = direction;
+        (*rays).share[i] = share;
+        (*rays).count = i + 1u;
     }
-    let hit = p + ends.y * direction;
-    let at = pixel_from_eye(hit);
-    // A ray that passes far behind something has not met it.
-    if dry_z_at(at) - hit.z > 0.25 * stride + 0.01 * reach {
-        return sky_towards(direction);
+}
+
+/// The light of all rays, each by its share.
+fn gathered(rays: ptr<function, Rays>, reach: f32, steps: u32) -> vec3f {
+    var light = vec3f(0.0);
+    for (var i = 0u; i < (*rays).count; i++) {
+        light += (*rays).share[i] * background((*rays).p[i], (*rays).direction[i], reach, steps);
     }
-    return dry_over_sky(at, direction);
+    return light;
 }

@@ -5,12 +5,17 @@
 #import "lib/sky.wgsl"
 
 var<uniform> sun: Light;
+var picture: texture_storage_2d<rgba16float, write>;
 
-@fragment
-fn over_sky(@builtin(position) position: vec4f) -> @location(0) vec4f {
-    let direction = normalize(world_from_eye_vector(eye_ray(position.xy).direction));
+@compute @workgroup_size(8, 8)
+fn over_sky(@builtin(global_invocation_id) id: vec3u) {
+    let texel = vec2i(id.xy);
+    if any(texel >= vec2i(textureDimensions(picture))) {
+        return;
+    }
+    let direction = normalize(world_from_eye_vector(eye_ray(vec2f(texel) + 0.5).direction));
     let to_sun = -sun.direction;
     let backdrop = sky_radiance(direction, to_sun, irradiance(sun), params.brightness)
         + sun_radiance(direction, to_sun, irradiance(sun), params.sun_radius);
-    return presented(textureLoad(color, vec2i(position.xy), 0), backdrop);
+    textureStore(picture, texel, presented(textureLoad(color, texel, 0), backdrop));
 }

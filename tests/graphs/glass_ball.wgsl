@@ -10,22 +10,24 @@ struct Params {
 }
 
 var<uniform> params: Params;
-var splash_z: texture_2d_array<f32>;
+var layers: texture_2d<f32>;
 var splash_normal: texture_2d_array<f32>;
 var linear_clamp: sampler;
 
 @fragment
 fn leaving(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let pixel = position.xy;
-    let z = textureLoad(splash_z, vec2i(pixel), 0, 0).x;
+    let z = textureLoad(layers, vec2i(pixel), 0).z;
     if z == 0.0 {
         return vec4f(0.0);
     }
     let p = eye_from_pixel(pixel, z);
     let view = normalize(eye_ray(pixel).direction);
     let outside = facing(layer_normal(splash_normal, linear_clamp, 0, pixel), view);
-    let into = bend_in(view, outside, params.ior);
-    let back = leave_sphere(splash_z, p, into.direction, outside, params.shapes_splash_radius, params.secant_steps);
-    let inside = facing(layer_normal(splash_normal, linear_clamp, 1, back.pixel), into.direction);
-    return vec4f(bend_out(into.direction, inside, params.ior).direction, back.t);
+    let direction = bend_in(view, outside, params.ior).direction;
+    let reach = SPHERE_REACH * params.shapes_splash_radius;
+    let found = leave_shell(layers, SPLASH, p, direction, reach, params.secant_steps);
+    let back = leave_sphere(found, p, direction, outside, params.shapes_splash_radius);
+    let inside = facing(layer_normal(splash_normal, linear_clamp, 1, back.pixel), direction);
+    return vec4f(bend_out(direction, inside, params.ior).direction, back.t);
 }
