@@ -155,6 +155,8 @@ pub(super) struct Lowering<'a> {
     in_steps: Option<usize>,
     /// `[2]`, or `[2][0]` in a loop in a loop.
     iteration: String,
+    /// Iterations of loops so far.
+    unrolled: usize,
     /// How many names are being resolved for one another.
     depth: usize,
     /// Variables of root inputs: `particles.position`, `color`.
@@ -184,6 +186,7 @@ impl<'a> Lowering<'a> {
             structure: Vec::new(),
             in_steps: None,
             iteration: String::new(),
+            unrolled: 0,
             depth: 0,
             input_vars: BTreeMap::new(),
         }

@@ -10,6 +10,9 @@ use crate::plan::model::{
 };
 use crate::shader::reflect::TextureDimension;
 
+/// Iterations and passes of all loops together.
+const MAX_UNROLLED: usize = 100_000;
+
 /// What a pass is put together from.
 pub(super) struct Draft {
     pub kind: PassKind,
@@ -86,13 +89,6 @@ impl Lowering<'_> {
 
     fn repeat(&mut self, s: ScopeId, repeat: &ast::Repeat) -> Result<()> {
         let (times, causes) = self.whole(s, &repeat.times, "the number of iterations", 0)?;
-        if times > 100_000 {
-            let message = format!("a loop of {times} iterations is too long to unroll: at most 100000");
-            return Err(traced(
-                fault(Code::OUT_OF_RANGE, message, repeat.times.span, "so many"),
-                &self.scopes[s].trace,
-            ));
-        }
         let mut swaps = Vec::new();
         for tuple in &repeat.swap {
             let vars = self.swap_vars(s, tuple);
@@ -103,6 +99,12 @@ impl Lowering<'_> {
         self.structure.push(causes);
         let outer = self.iteration.clone();
         for i in 0..times {
+            self.unrolled += 1;
+            if self.unrolled + self.flat.len() > MAX_UNROLLED {
+                let message = format!("the loops of this graph unroll to more than {MAX_UNROLLED} passes");
+                let diagnostic = fault(Code::OUT_OF_RANGE, message, repeat.times.span, "in this loop");
+                return Err(traced(diagnostic, &self.scopes[s].trace));
+            }
             self.iteration = format!("{outer}[{i}]");
             if let Some(index) = &repeat.index {
                 self.scopes[s].counters.push((index.value.clone(), i));

@@ -11,6 +11,9 @@ use crate::graph::model::{InputKind, Mips, ResourceKind, Sp, ViewDimension};
 use crate::graph::value::Value;
 use crate::plan::model::{Buffer, Causes, InputInfo, Object, ObjectKind, ObjectRef, Origin, Texture};
 
+/// Texels or layers in one direction: above what any device has, below what would take planning long.
+const MAX_EDGE: i64 = 1 << 16;
+
 impl Lowering<'_> {
     pub(super) fn add_var(&mut self, building: Building) -> VarId {
         self.objects.push(building);
@@ -156,6 +159,10 @@ impl Lowering<'_> {
             let diagnostic = fault(Code::OUT_OF_RANGE, message, at.unwrap_or(format.span), "not possible");
             Err(traced(diagnostic, &self.scopes[s].trace))
         };
+        let most = edges.iter().map(|e| e.0).chain([layers]).max().unwrap_or(1);
+        if most > MAX_EDGE {
+            return refuse(format!("a texture of {most} texels or layers in one direction is more than any device takes"), size.first().map(|e| e.span));
+        }
         if samples != 1 && samples != 4 {
             return refuse(format!("samples must be 1 or 4, and is {samples}"), samples_given);
         }
