@@ -7,4 +7,7 @@ mod golden;
 
 mod language {
     pub mod cases;
+    mod expressions;
+    mod robust;
+    mod ron_reference;
 }

@@ -26,49 +26,75 @@ pub(super) struct Repairs {
 
 /// Makes the brackets of `tokens` match.
 pub(super) fn balance(text: &str, tokens: &mut Vec<Token>) -> Repairs {
-    let places = places(text, tokens);
-    let marks = marks(tokens, &places);
-    if simulate(&marks, 0).repairs.is_empty() {
+    let layout = places(text, tokens);
+    let as_written = find_marks(tokens, &layout, false);
+    if simulate(&as_written, 0).repairs.is_empty() {
         return Repairs::default();
     }
-    let ways = if marks.len() > 100_000 { 1 } else { 3u32.pow(TRIED) };
-    let best = (0..ways).map(|way| simulate(&marks, way)).min_by_key(|outcome| outcome.cost).unwrap_or_default();
+    let opened = find_marks(tokens, &layout, true);
+    let (first, second) = (search(&as_written), search(&opened));
+    let (marks, best) = if second.cost <= first.cost { (opened, second) } else { (as_written, first) };
+    let openers = best.pairs.iter().map(|(o, c)| (marks[*c].token, marks[*o].token)).collect();
     let partners = best.pairs.iter().map(|(o, c)| (marks[*o].token, marks[*c].token)).collect();
     let mut mender = Mender {
         tokens,
-        places: &places,
+        places: &layout,
         marks: &marks,
         pairs: &best.pairs,
         partners,
+        openers,
         edits: Vec::new(),
         repairs: Repairs::default(),
     };
+    best.pairs.iter().filter(|(open, _)| marks[*open].is_lost).for_each(|(o, c)| mender.open(marks[*o].token, *c));
     best.repairs.iter().take(MENDED).for_each(|repair| mender.mend(*repair));
     let Mender { edits, repairs, .. } = mender;
-    if best.repairs.len() > MENDED {
+    let mended = apply(edits, tokens);
+    let holds = simulate(&find_marks(&mended, &places(text, &mended), false), 0).repairs.is_empty();
+    if best.repairs.len() <= MENDED && holds {
+        *tokens = mended;
+    } else {
         // Hardly RON: say what was found, read nothing.
         tokens.drain(..tokens.len() - 1);
-    } else {
-        apply(edits, tokens);
     }
     repairs
 }
 
-fn apply(mut edits: Vec<Edit>, tokens: &mut Vec<Token>) {
-    // From the end, so that positions stay right; where several close at one place, the inner
-    // ones come first in `edits` and must end up first.
-    edits.reverse();
-    edits.sort_by_key(|edit| std::cmp::Reverse(edit.at()));
-    for edit in edits {
-        match edit {
-            Edit::Insert(at, bracket) => {
-                let start = tokens[at].range.start;
-                tokens.insert(at, Token { kind: TokenKind::Close(bracket), range: start..start });
+/// The best way to match brackets.
+fn search(marks: &[Mark]) -> Outcome {
+    let ways = if marks.len() > 20_000 { 1 } else { 3u32.pow(TRIED) };
+    (0..ways).map(|way| simulate(marks, way)).min_by_key(|outcome| outcome.cost).unwrap_or_default()
+}
+
+/// The tokens with the edits made.
+fn apply(mut edits: Vec<Edit>, tokens: &[Token]) -> Vec<Token> {
+    // At one place brackets close before others open, and inner ones close first.
+    edits.sort_by_key(|edit| match edit {
+        Edit::Close { at, opener, .. } => (*at, 0, std::cmp::Reverse(*opener)),
+        Edit::Open(at, _) => (*at, 1, std::cmp::Reverse(0)),
+        Edit::Remove(at) | Edit::Replace(at, _) => (*at, 2, std::cmp::Reverse(0)),
+    });
+    let mut edits = edits.into_iter().peekable();
+    let mut out = Vec::with_capacity(tokens.len());
+    for (i, token) in tokens.iter().enumerate() {
+        let mut kept = Some(token.clone());
+        while let Some(edit) = edits.next_if(|edit| edit.at() == i) {
+            let start = token.range.start;
+            match edit {
+                Edit::Close { bracket, .. } => out.push(Token { kind: TokenKind::Close(bracket), range: start..start }),
+                Edit::Open(_, bracket) => {
+                    let end = out.last().map_or(start, |before: &Token| before.range.end);
+                    out.push(Token { kind: TokenKind::Open(bracket), range: end..end });
+                }
+                Edit::Remove(_) => kept = None,
+                Edit::Replace(_, bracket) => {
+                    kept = Some(Token { kind: TokenKind::Close(bracket), range: token.range.clone() });
+                }
             }
-            Edit::Remove(at) => _ = tokens.remove(at),
-            Edit::Replace(at, bracket) => tokens[at].kind = TokenKind::Close(bracket),
         }
+        out.extend(kept);
     }
+    out
 }
 
 /// How a token stands on its line.
@@ -85,6 +111,8 @@ struct Mark {
     token: usize,
     bracket: Bracket,
     opens: bool,
+    /// It is not there, but should be, before the token.
+    is_lost: bool,
     place: Place,
 }
 
@@ -103,13 +131,25 @@ fn places(text: &str, tokens: &[Token]) -> Vec<Place> {
     tokens.iter().enumerate().map(place).collect()
 }
 
-fn marks(tokens: &[Token], places: &[Place]) -> Vec<Mark> {
-    let mark = |(token, t): (usize, &Token)| match t.kind {
-        TokenKind::Open(bracket) => Some(Mark { token, bracket, opens: true, place: places[token] }),
-        TokenKind::Close(bracket) => Some(Mark { token, bracket, opens: false, place: places[token] }),
-        _ => None,
-    };
-    tokens.iter().enumerate().filter_map(mark).collect()
+/// The brackets, and with `opened` also an opening one after each word that certainly lacks it:
+/// `each: Texel "z")`.
+fn find_marks(tokens: &[Token], places: &[Place], opened: bool) -> Vec<Mark> {
+    let mut marks = Vec::new();
+    for (token, t) in tokens.iter().enumerate() {
+        let place = places[token];
+        let lacks = |word: &Token, before: &Token| {
+            let is_value = !matches!(t.kind, TokenKind::Open(_) | TokenKind::Bad) && t.kind.starts_value();
+            is_value && matches!(word.kind, TokenKind::Ident(_)) && before.kind == TokenKind::Colon
+        };
+        if opened && token >= 2 && lacks(&tokens[token - 1], &tokens[token - 2]) {
+            marks.push(Mark { token, bracket: Bracket::Round, opens: true, is_lost: true, place });
+        }
+        if let TokenKind::Open(bracket) | TokenKind::Close(bracket) = t.kind {
+            let opens = matches!(t.kind, TokenKind::Open(_));
+            marks.push(Mark { token, bracket, opens, is_lost: false, place });
+        }
+    }
+    marks
 }
 
 /// The column (in bytes) and the end of the line of an offset.
@@ -140,27 +180,33 @@ struct Outcome {
 fn simulate(marks: &[Mark], way: u32) -> Outcome {
     let mut out = Outcome::default();
     let mut stack: Vec<usize> = Vec::new();
+    let mut open_of = [0usize; 3];
     let (mut way, mut decided) = (way, 0);
     let mut i = 0;
     while i < marks.len() {
         let mark = marks[i];
         if mark.opens {
             stack.push(i);
+            open_of[mark.bracket as usize] += 1;
+            out.cost += 1000 * usize::from(mark.is_lost);
             i += 1;
             continue;
         }
         let top = stack.last().copied();
         if let Some(open) = top.filter(|open| marks[*open].bracket == mark.bracket) {
             stack.pop();
+            open_of[mark.bracket as usize] -= 1;
             out.cost += usize::from(mark.place.is_first && marks[open].place.indent != mark.place.indent);
             out.pairs.push((open, i));
             i += 1;
             continue;
         }
-        let is_open_below = stack.iter().any(|open| marks[*open].bracket == mark.bracket);
-        let choice = if decided < TRIED { way % 3 } else { u32::from(!is_open_below) };
+        let choice = if decided < TRIED { way % 3 } else { u32::from(open_of[mark.bracket as usize] == 0) };
         (way, decided) = (way / 3, decided + 1);
         out.cost += 1000;
+        if let (0 | 2, Some(open)) = (choice, top) {
+            open_of[marks[open].bracket as usize] -= 1;
+        }
         match (choice, top) {
             (0, Some(open)) => {
                 stack.pop();
@@ -185,8 +231,14 @@ fn simulate(marks: &[Mark], way: u32) -> Outcome {
 }
 
 enum Edit {
-    /// Before the token.
-    Insert(usize, Bracket),
+    /// A closing bracket before the token, for the one that opens at another.
+    Close {
+        at: usize,
+        opener: usize,
+        bracket: Bracket,
+    },
+    /// An opening bracket before the token.
+    Open(usize, Bracket),
     Remove(usize),
     Replace(usize, Bracket),
 }
@@ -194,9 +246,19 @@ enum Edit {
 impl Edit {
     fn at(&self) -> usize {
         match self {
-            Edit::Insert(at, _) | Edit::Remove(at) | Edit::Replace(at, _) => *at,
+            Edit::Close { at, .. } | Edit::Open(at, _) | Edit::Remove(at) | Edit::Replace(at, _) => *at,
         }
     }
+}
+
+/// How an entry of a bracket begins.
+#[derive(Clone, Copy, PartialEq)]
+enum Sort {
+    /// `name:`
+    Field,
+    /// `"name":`
+    Key,
+    Item,
 }
 
 struct Mender<'a> {
@@ -206,6 +268,8 @@ struct Mender<'a> {
     pairs: &'a [(usize, usize)],
     /// The token that closes what a token opens.
     partners: HashMap<usize, usize>,
+    /// The token that opens what a token closes.
+    openers: HashMap<usize, usize>,
     edits: Vec<Edit>,
     repairs: Repairs,
 }
@@ -213,19 +277,12 @@ struct Mender<'a> {
 impl Mender<'_> {
     fn mend(&mut self, repair: Repair) {
         match repair {
-            Repair::Unclosed(open, before) => self.close(open, before),
-            Repair::Stray(close, open) => {
-                let (at, bracket) = (self.marks[close].token, self.marks[close].bracket);
-                let range = self.tokens[at].range.clone();
-                let what = format!("a `{}` closes nothing", bracket.close());
-                let label = match open {
-                    Some(open) => format!("a `{}` is open here", self.marks[open].bracket.open()),
-                    None => "nothing is open here".into(),
-                };
-                self.repairs.faults.push(Fault::new(range.clone(), what, label).hint("remove it"));
-                self.repairs.disturbed.push(range);
-                self.edits.push(Edit::Remove(at));
-            }
+            Repair::Unclosed(open, before) if !self.marks[open].is_lost => self.close(open, before),
+            Repair::Unclosed(..) => {}
+            Repair::Stray(close, open) => match self.lost_opener(close, open) {
+                Some(at) => self.open(at, close),
+                None => self.drop(close, open),
+            },
             Repair::Unlike(open, close) => {
                 let (opener, closer) = (self.marks[open], self.marks[close]);
                 let what = format!("a `{}` is closed by a `{}`", opener.bracket.open(), closer.bracket.close());
@@ -238,14 +295,75 @@ impl Mender<'_> {
         }
     }
 
+    /// Takes a closing bracket away.
+    fn drop(&mut self, close: usize, open: Option<usize>) {
+        let (at, bracket) = (self.marks[close].token, self.marks[close].bracket);
+        let range = self.tokens[at].range.clone();
+        let label = match open {
+            Some(open) => format!("a `{}` is open here", self.marks[open].bracket.open()),
+            None => "nothing is open here".into(),
+        };
+        let what = format!("a `{}` closes nothing", bracket.close());
+        self.repairs.faults.push(Fault::new(range.clone(), what, label).hint("remove it"));
+        self.repairs.disturbed.push(range);
+        self.edits.push(Edit::Remove(at));
+    }
+
+    /// Opens a bracket before a token, for a closing one that has no partner.
+    fn open(&mut self, at: usize, close: usize) {
+        let closer = self.marks[close];
+        let gap = self.tokens[at - 1].range.end;
+        let what = format!("a `{}` is missing", closer.bracket.open());
+        let fault = Fault::new(gap..gap, what, format!("a `{}` is expected here", closer.bracket.open()));
+        self.repairs.faults.push(fault.see(self.tokens[closer.token].range.clone(), "this closes it"));
+        self.edits.push(Edit::Open(at, closer.bracket));
+    }
+
+    /// Before which token an opening bracket was lost, if the tokens tell: a word that is followed
+    /// by something other than its bracket, fields in a list, a field whose value goes on after a
+    /// comma without a name.
+    fn lost_opener(&self, close: usize, open: Option<usize>) -> Option<usize> {
+        let first = open.map_or(0, |open| self.marks[open].token + 1);
+        let mut at = self.marks[close].token;
+        let mut run = None;
+        while at > first {
+            at -= 1;
+            if let Some(opener) = self.openers.get(&at).filter(|opener| **opener >= first) {
+                at = *opener;
+                continue;
+            }
+            let next = &self.tokens[at + 1].kind;
+            match (self.marks[close].bracket, &self.tokens[at].kind) {
+                (Bracket::Round, TokenKind::Ident(_)) => {
+                    if next.starts_value() && *next != TokenKind::Open(Bracket::Round) {
+                        return Some(at + 1);
+                    }
+                    if *next == TokenKind::Colon {
+                        run = Some(at);
+                    }
+                }
+                (Bracket::Square | Bracket::Curly, TokenKind::Colon) => {
+                    let is_field = at > first && matches!(self.tokens[at - 1].kind, TokenKind::Ident(_));
+                    if is_field && at + 1 < self.marks[close].token {
+                        return Some(at + 1);
+                    }
+                }
+                _ => {}
+            }
+        }
+        // Fields that stand in a list lack their bracket.
+        let in_list = open.is_some_and(|open| self.marks[open].bracket == Bracket::Square);
+        run.filter(|_| in_list)
+    }
+
     /// Closes a bracket where its block ends by indentation, else just before what shows that
     /// it is not closed.
     fn close(&mut self, open: usize, before: Option<usize>) {
         let (open, before) = self.culprit(open, before);
         let mark = self.marks[open];
         let latest = before.map_or(self.tokens.len() - 1, |close| self.marks[close].token);
-        let by_indent = self.block_end(open, latest);
-        let at = by_indent.unwrap_or(latest);
+        let by_layout = self.block_end(open, latest).into_iter().chain(self.change(mark, latest)).min();
+        let at = self.nested(mark.token, by_layout.unwrap_or(latest));
         let opener = self.tokens[mark.token].range.clone();
         let what = format!("a `{}` is never closed", mark.bracket.open());
         let found = match &self.tokens[at].kind {
@@ -255,12 +373,26 @@ impl Mender<'_> {
         self.repairs
             .faults
             .push(Fault::new(opener.clone(), what, "this opens it").see(self.tokens[at].range.clone(), found));
-        self.repairs.disturbed.push(match by_indent {
+        self.repairs.disturbed.push(match by_layout {
             Some(_) => self.tokens[at].range.clone(),
             None if before.is_none() => self.tokens[at].range.clone(),
             None => opener.start..self.tokens[at].range.end,
         });
-        self.edits.push(Edit::Insert(at, mark.bracket));
+        self.edits.push(Edit::Close { at, opener: mark.token, bracket: mark.bracket });
+    }
+
+    /// Moves the end of a bracket so that it neither cuts one that was closed inside it nor leaves
+    /// one that was closed around it.
+    fn nested(&self, opener: usize, at: usize) -> usize {
+        let closed = self.edits.iter().filter_map(|edit| match edit {
+            Edit::Close { at, opener, .. } => Some((*opener, *at)),
+            _ => None,
+        });
+        closed.fold(at, |at, (other, end)| match other > opener {
+            true if other < at => at.max(end),
+            false if end > opener => at.min(end),
+            _ => at,
+        })
     }
 
     /// The bracket that is open for too long is often not the one that lacks its partner: inside
@@ -272,16 +404,48 @@ impl Mender<'_> {
             let end = before.unwrap_or(self.marks.len());
             let thief = self.pairs.iter().filter(|(o, c)| open < *o && *c < end).find(|(o, c)| {
                 let (inner, closer) = (self.marks[*o], self.marks[*c]);
-                inner.bracket == outer.bracket
-                    && closer.place.is_first
+                if inner.bracket != outer.bracket {
+                    return false;
+                }
+                let took = closer.place.is_first
                     && closer.place.indent == outer.place.indent
-                    && inner.place.indent > closer.place.indent
+                    && inner.place.indent > closer.place.indent;
+                took || self.change(inner, closer.token).is_some()
             });
             match thief {
                 Some((o, c)) => (open, before) = (*o, Some(*c)),
                 None => return (open, before),
             }
         }
+    }
+
+    /// The comma after which the entries of a bracket are of another sort than belongs in it: a
+    /// list has no names, a map none without quotes, and a tuple that began without names has none.
+    fn change(&self, mark: Mark, latest: usize) -> Option<usize> {
+        let sort = |at: usize| {
+            let has_colon = self.tokens.get(at + 1).is_some_and(|next| next.kind == TokenKind::Colon);
+            match self.tokens[at].kind {
+                TokenKind::Ident(_) if has_colon => Sort::Field,
+                TokenKind::Str(..) if has_colon => Sort::Key,
+                _ => Sort::Item,
+            }
+        };
+        let first = sort(mark.token + 1);
+        let mut at = mark.token + 1;
+        while at < latest {
+            if self.tokens[at].kind == TokenKind::Comma {
+                let is_other = match (mark.bracket, sort(at + 1)) {
+                    (_, Sort::Item) | (Bracket::Curly, Sort::Key) => false,
+                    (Bracket::Square | Bracket::Curly, _) | (Bracket::Round, Sort::Key) => true,
+                    (Bracket::Round, Sort::Field) => first == Sort::Item,
+                };
+                if is_other {
+                    return Some(at);
+                }
+            }
+            at = self.partners.get(&at).filter(|close| **close < latest).map_or(at + 1, |close| close + 1);
+        }
+        None
     }
 
     /// The first token after an opening bracket that begins a line no deeper than the line of the
@@ -292,7 +456,8 @@ impl Mender<'_> {
         while at < latest {
             let place = self.places[at];
             if place.is_first && place.indent <= mark.place.indent {
-                let after_comma = self.tokens[at - 1].kind == TokenKind::Comma && at - 1 > mark.token;
+                let is_comma = |at: usize| self.tokens[at].kind == TokenKind::Comma;
+                let after_comma = is_comma(at - 1) && at - 1 > mark.token && !is_comma(at);
                 return Some(if after_comma { at - 1 } else { at });
             }
             at = match self.partners.get(&at) {

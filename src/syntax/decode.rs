@@ -6,6 +6,9 @@
 use super::{Body, Kind, Node, Sp, Str, Tagged};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics, Span};
 
+/// How many findings of one file are kept.
+const MAX_FINDINGS: usize = 300;
+
 /// Collects what is wrong while nodes are turned into values.
 #[derive(Debug)]
 pub struct Decoder<'d> {
@@ -47,8 +50,11 @@ impl<'n> Fields<'n> {
 }
 
 impl Decoder<'_> {
+    /// Keeps a finding, up to a number that nobody reads.
     pub fn push(&mut self, diagnostic: Diagnostic) {
-        self.diagnostics.push(diagnostic);
+        if self.diagnostics.0.len() < MAX_FINDINGS {
+            self.diagnostics.push(diagnostic);
+        }
     }
 
     /// Reports that `node` is not what is expected at `what`.

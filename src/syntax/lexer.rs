@@ -201,11 +201,7 @@ impl<'a> Lexer<'a> {
             'a'..='z' | 'A'..='Z' | '_' => {
                 let length = rest.find(|c: char| !c.is_ascii_alphanumeric() && c != '_').unwrap_or(rest.len());
                 self.at += length;
-                match &rest[..length] {
-                    "inf" => TokenKind::Float(f64::INFINITY),
-                    "NaN" => TokenKind::Float(f64::NAN),
-                    name => TokenKind::Ident(name.into()),
-                }
+                TokenKind::Ident(rest[..length].into())
             }
             c => {
                 self.at += c.len_utf8();

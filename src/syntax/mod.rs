@@ -21,8 +21,8 @@ use std::path::Path;
 
 use crate::diagnostic::{Code, Diagnostic, Diagnostics, FileId, Sources, Span};
 
-/// How deep brackets may nest.
-pub const MAX_DEPTH: usize = 100;
+/// How deep brackets may nest; a little less than in `ron`.
+pub const MAX_DEPTH: usize = 60;
 
 /// A value and where it was written.
 #[derive(Clone, Debug, PartialEq)]

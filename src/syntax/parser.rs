@@ -13,10 +13,14 @@ use crate::diagnostic::{Code, Diagnostic, Diagnostics, FileId, Span};
 /// Extensions of RON that may be enabled; none changes what a tree looks like.
 const EXTENSIONS: &[&str] = &["unwrap_newtypes", "implicit_some", "unwrap_variant_newtypes", "explicit_struct_names"];
 
+/// How many mistakes of form are told: a file with more is not RON.
+const MAX_FAULTS: usize = 50;
+
 pub(super) fn parse(text: &str, file: FileId, diagnostics: &mut Diagnostics) -> Option<Node> {
     let lexed = lexer::lex(text);
     let mut tokens = lexed.tokens;
     let mut faults = lexed.faults;
+    faults.truncate(MAX_FAULTS);
     let repairs = brackets::balance(text, &mut tokens);
     let mut disturbed = repairs.disturbed;
     if lexed.broken_lines.is_empty() {
@@ -115,6 +119,9 @@ impl Parser {
     }
 
     fn fault(&mut self, fault: Fault) {
+        if self.faults.len() >= MAX_FAULTS {
+            return;
+        }
         let touches = |r: &Range<usize>| r.start <= fault.range.end && fault.range.start <= r.end;
         let said = self.faults.iter().any(|f| f.range.start == fault.range.start);
         if !said && !self.disturbed.iter().any(touches) {
@@ -199,6 +206,8 @@ impl Parser {
         let kind = match name.as_str() {
             "true" => Kind::Bool(true),
             "false" => Kind::Bool(false),
+            "inf" => Kind::Float(f64::INFINITY),
+            "NaN" => Kind::Float(f64::NAN),
             _ if *self.peek() == TokenKind::Open(Bracket::Round) => {
                 return self.tagged(Some(Sp { value: name, span }));
             }
@@ -255,9 +264,9 @@ impl Parser {
     fn entries(&mut self, bracket: Bracket, mut entry: impl FnMut(&mut Self)) -> usize {
         let close = TokenKind::Close(bracket);
         loop {
-            if *self.peek() == close || *self.peek() == TokenKind::End {
+            if matches!(self.peek(), TokenKind::Close(_) | TokenKind::End) {
                 let end = self.range().end;
-                self.advance();
+                self.eat(&close);
                 self.depth -= 1;
                 return end;
             }
@@ -363,7 +372,9 @@ impl Parser {
         for (key, value) in entries {
             if let Some((text, span)) = name(&key) {
                 if let Some(first) = seen.get(text) {
-                    self.duplicates.push(duplicate(what, text, *first, span));
+                    if self.duplicates.len() < MAX_FAULTS {
+                        self.duplicates.push(duplicate(what, text, *first, span));
+                    }
                     continue;
                 }
                 seen.insert(text.into(), span);

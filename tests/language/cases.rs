@@ -60,3 +60,11 @@ fn valid_graphs_read_without_errors() {
         assert!(graph.is_some());
     }
 }
+
+/// Reads a text as a graph.
+pub fn read_text(text: &str) -> (Option<Graph>, Diagnostics, Sources) {
+    let mut sources = Sources::new();
+    let file = sources.add("graph.ron", text);
+    let (graph, diagnostics) = graph::read(&sources, file, Path::new("graph.ron"));
+    (graph, diagnostics, sources)
+}

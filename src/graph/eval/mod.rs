@@ -235,7 +235,9 @@ fn name(path: &str, span: Span, scope: &dyn Scope) -> Result<ExprKind, Diagnosti
     };
     let Some((prefix, c)) = component_of(path) else { return Err(error) };
     match scope.name(prefix, span) {
-        Ok(Lookup::Value(value)) => ops::component(&value, c).map(ExprKind::Literal).map_err(|m| wrong(m, span, &[])),
+        Ok(Lookup::Value(value)) => ops::component(&value, c).map(ExprKind::Literal).map_err(|message| {
+            Diagnostic::error(Code::EXPRESSION_TYPE, message).at(span, format!("`{prefix}` is {}", told(&value)))
+        }),
         Ok(Lookup::Live(live)) => Ok(ExprKind::Component(Box::new(live), c)),
         Err(_) => Err(error),
     }
@@ -291,7 +293,7 @@ fn wrong(message: String, span: Span, operands: &[&Expr]) -> Diagnostic {
     diagnostic = match operands {
         // One operand fills most of the expression: say it once.
         [] | [_] => diagnostic.at(span, operands.first().and_then(|o| literal(o)).map(told).unwrap_or_default()),
-        _ => diagnostic.at(span, "in this expression"),
+        _ => diagnostic.at(span, ""),
     };
     if operands.len() > 1 {
         for operand in operands.iter().filter(|o| o.span != span) {
