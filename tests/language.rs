@@ -8,6 +8,7 @@ mod golden;
 mod language {
     pub mod cases;
     mod expressions;
+    mod reading;
     mod robust;
     mod ron_reference;
 }
