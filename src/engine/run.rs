@@ -83,8 +83,32 @@ impl Runner {
             return Err(diagnostic.into());
         }
         self.timing.submitted(began.elapsed().as_secs_f64() * 1e3);
-        gpu.check()?;
-        Ok(self.timing.preliminary(&self.plan))
+        match gpu.check() {
+            Ok(()) => Ok(self.timing.preliminary(&self.plan)),
+            Err(lost) if errors::is_device_gone(&lost) => Err(lost.into()),
+            Err(refused) => Err(self.blame(gpu).unwrap_or_else(|| refused.into())),
+        }
+    }
+
+    /// Which passes the device refuses, found by encoding each on its own.
+    fn blame(&mut self, gpu: &Gpu) -> Option<Diagnostics> {
+        let mut found = Diagnostics::new();
+        for index in 0..self.plan.passes.len() {
+            let refused = match self.ensure_variant(gpu, index) {
+                Err(diagnostic) => Some(diagnostic),
+                Ok(key) => {
+                    let mut recorder = Recorder::new(gpu);
+                    let pass = &self.plan.passes[index];
+                    let encoded = errors::scoped(gpu, || {
+                        self.record(&mut recorder, index, key, None);
+                        recorder.encoder.finish()
+                    });
+                    encoded.err().map(|e| errors::refused("the commands of", &pass.path, pass.span, &e))
+                }
+            };
+            found.0.extend(refused);
+        }
+        Some(found).filter(|f| !f.is_empty())
     }
 
     /// Waits until the GPU is done and gives the last frame's report, with times and counts.
@@ -202,7 +226,13 @@ impl Runner {
         let key = self.ensure_variant(gpu, index)?;
         let Some(variant) = self.variants[index].get(&key) else { return Ok(()) };
         let pair = self.timing.mark(index, encode::can_be_timed(variant, self.timing.times_encoders()));
-        let pass = &self.plan.passes[index];
+        self.record(recorder, index, key, pair);
+        recorder.count(gpu);
+        Ok(())
+    }
+
+    fn record(&self, recorder: &mut Recorder, index: usize, key: usize, pair: Option<u32>) {
+        let Some(variant) = self.variants[index].get(&key) else { return };
         Encoding {
             encoder: &mut recorder.encoder,
             plan: &self.plan,
@@ -213,9 +243,7 @@ impl Runner {
             pair,
             loads_are_free: self.loads_are_free,
         }
-        .pass(pass, self.pipelines[index].as_deref(), variant);
-        recorder.count(gpu);
-        Ok(())
+        .pass(&self.plan.passes[index], self.pipelines[index].as_deref(), variant);
     }
 
     /// Makes what the pass needs for the current rotation, if it is not there.

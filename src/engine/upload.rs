@@ -1,12 +1,11 @@
 //! Filling inputs: bytes from the host, or what another runner holds.
 
 use super::bind::resolve;
-use super::mips::padded_row;
 use super::pool::Memory;
 use super::prepare::{Engine, Runner};
 use super::texel;
 use crate::diagnostic::{Code, Diagnostic};
-use crate::plan::model::{ObjectId, ObjectKind, ObjectRef, Texture};
+use crate::plan::model::{ObjectId, ObjectKind, ObjectRef, Origin, Texture};
 
 impl Runner {
     /// Writes the bytes of a buffer from its start; the rest stays as it is.
@@ -56,7 +55,6 @@ impl Runner {
             let message = format!("takes {expected} bytes for mip {mip}, not {}", bytes.len());
             return Err(self.unfit(object, &message));
         }
-        debug_assert!(padded_row(format, width, size) as usize >= row);
         engine.gpu().queue().write_texture(
             wgpu::TexelCopyTextureInfo {
                 texture,
@@ -98,6 +96,43 @@ impl Runner {
     /// If it is smaller than the plan was made for.
     pub fn share_buffer(&mut self, object: ObjectId, buffer: &wgpu::Buffer) -> Result<(), Diagnostic> {
         self.share_memory(object, Memory::Buffer(buffer.clone()))
+    }
+
+    /// Fills all that passes of a frame write with bytes of ones: NaN for floats, the largest for
+    /// whole numbers. A picture that then changes shows that a shader leaves holes in what it
+    /// should write whole. Depth and textures of several samples cannot be filled so and stay.
+    ///
+    /// # Errors
+    /// If the device refuses a write.
+    pub fn poison(&mut self, engine: &Engine) -> Result<(), Diagnostic> {
+        for object in 0..self.plan.objects.len() {
+            if self.plan.objects[object].origin != Origin::Frame {
+                continue;
+            }
+            match self.plan.objects[object].kind.clone() {
+                ObjectKind::Buffer(buffer) => {
+                    self.upload_buffer(engine, object, &vec![0xff; buffer.bytes() as usize])?;
+                }
+                ObjectKind::Texture(t) if t.samples == 1 && !t.format.is_depth_stencil_format() => {
+                    self.poison_texture(engine, object, &t)?;
+                }
+                ObjectKind::Texture(_) => {}
+            }
+        }
+        Ok(())
+    }
+
+    fn poison_texture(&mut self, engine: &Engine, object: ObjectId, about: &Texture) -> Result<(), Diagnostic> {
+        let size = texel::size(about.format).unwrap_or(0);
+        for mip in 0..about.mips {
+            let [width, height] = [about.width, about.height].map(|n| (n >> mip).max(1) as usize);
+            let bytes = vec![0xff; width * height * size];
+            let layers = if about.is_3d { (about.layers >> mip).max(1) } else { about.layers };
+            for layer in 0..layers {
+                self.upload_texture(engine, object, mip, layer, &bytes)?;
+            }
+        }
+        Ok(())
     }
 
     /// The texture that a reference stands for now, for those who show or use it on the same

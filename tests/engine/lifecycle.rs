@@ -215,3 +215,37 @@ pub fn an_unknown_backend_is_told(_: &mut Engine) {
     let adapters = Gpu::adapters(&GpuOptions::default()).unwrap();
     assert!(!adapters.is_empty());
 }
+
+pub fn poison_shows_holes(engine: &mut Engine) {
+    const HALF: &str = "
+var<storage, read_write> out: array<f32>;
+@compute @workgroup_size(1) fn main() { out[0] = 1.0; }";
+    let mut plan = new_plan();
+    let (out, picture) = (plan.buffer("out", 2), plan.texture("picture", TextureFormat::Rgba16Float, 3, 2));
+    plan.compute("half", HALF, &[("out", storage(out))], Dispatch::Groups([1, 1, 1]));
+    let mut runner = prepare(engine, plan);
+    runner.poison(engine).unwrap();
+    run(engine, &mut runner);
+    let [whole, hole] = words(engine, &runner, out)[..] else { panic!("two items") };
+    assert_eq!(f32::from_bits(whole), 1.0);
+    assert!(f32::from_bits(hole).is_nan());
+    assert!(texels(engine, &runner, picture, 0, 0).iter().flatten().all(|v| v.is_nan()));
+}
+
+/// What an embedder opened, here without any driver: all is validated and nothing runs.
+pub fn a_device_may_come_from_outside(_: &mut Engine) {
+    let descriptor = wgpu::DeviceDescriptor { required_limits: wgpu::Limits::default(), ..Default::default() };
+    let (device, queue) = wgpu::Device::noop(&descriptor);
+    let mut engine = Engine::new(Gpu::from_parts(None, device, queue));
+    let (plan, _) = counting_plan(1.0);
+    let mut runner = prepare(&mut engine, plan.clone());
+    let report = run(&mut engine, &mut runner);
+    assert!(report.complete && report.passes[0].gpu_ms.is_none(), "{report:?}");
+    let mut wrong = plan;
+    if let PassKind::Compute { dispatch, .. } = &mut wrong.passes[0].kind {
+        *dispatch = Dispatch::Groups([100_000, 1, 1]);
+    }
+    let mut runner = prepare(&mut engine, wrong);
+    let failed = runner.run(&engine, &frame()).unwrap_err();
+    assert!(failed.iter().any(|d| d.message.contains("add")), "the pass is named: {failed:?}");
+}

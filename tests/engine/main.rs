@@ -56,6 +56,8 @@ fn main() -> ExitCode {
         lifecycle::samplers_filter_or_not,
         lifecycle::a_lost_device_is_told_as_such,
         lifecycle::an_unknown_backend_is_told,
+        lifecycle::poison_shows_holes,
+        lifecycle::a_device_may_come_from_outside,
         shipped::imai2016,
         shipped::imai2014,
     ])
