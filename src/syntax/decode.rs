@@ -4,7 +4,7 @@
 //! `what` names the place in messages: "`mips`", "`size` of `color`".
 
 use super::{Body, Kind, Node, Sp, Str, Tagged};
-use crate::diagnostic::{Code, Diagnostic, Diagnostics, Span};
+use crate::diagnostic::{Code, Diagnostic, Diagnostics, Span, nearest};
 
 /// How many findings of one file are kept.
 const MAX_FINDINGS: usize = 300;
@@ -23,6 +23,10 @@ pub struct Fields<'n> {
     /// The word and the opening bracket.
     pub head: Span,
     entries: Vec<(&'n Sp<String>, &'n Node)>,
+    /// Known fields that were probably meant by unknown ones.
+    misspelt: Vec<String>,
+    /// Nothing in the bracket was unreadable.
+    is_whole: bool,
 }
 
 impl<'n> Fields<'n> {
@@ -36,10 +40,15 @@ impl<'n> Fields<'n> {
         self.entries.iter().find(|(n, _)| n.value == name).copied()
     }
 
+    /// Whether none of the fields is given, nor anything that was probably meant as one of them.
+    pub fn lacks(&self, names: &[&str]) -> bool {
+        self.is_whole && names.iter().all(|name| self.get(name).is_none() && !self.misspelt.iter().any(|m| m == name))
+    }
+
     /// The value of a field that must be given.
     pub fn require(&self, decoder: &mut Decoder<'_>, name: &str) -> Option<&'n Node> {
         let found = self.get(name);
-        if found.is_none() {
+        if self.lacks(&[name]) {
             decoder.push(
                 Diagnostic::error(Code::MISSING_FIELD, format!("{} lacks the field `{name}`", self.owner))
                     .at(self.head, format!("`{name}` is missing here")),
@@ -77,9 +86,16 @@ impl Decoder<'_> {
 
     /// As [`Decoder::fields`], of a bracket whose word was looked at already.
     pub fn body_fields<'n>(&mut self, tagged: &'n Tagged, owner: &str, known: &[&str]) -> Option<Fields<'n>> {
-        let mut fields = Fields { owner: owner.into(), head: tagged.head, entries: Vec::new() };
+        let mut fields = Fields {
+            owner: owner.into(),
+            head: tagged.head,
+            entries: Vec::new(),
+            misspelt: Vec::new(),
+            is_whole: tagged.is_whole,
+        };
         match &tagged.body {
             Body::Unit => {}
+            Body::Items(_) if !tagged.is_whole => return None,
             Body::Items(items) => {
                 if let Some(first) = items.iter().find(|item| !item.is_invalid()) {
                     self.push(
@@ -99,6 +115,7 @@ impl Decoder<'_> {
                         fields.entries.push((name, value));
                     } else {
                         self.unknown_field(name, owner, known);
+                        fields.misspelt.extend(nearest(&name.value, known.iter().copied()).map(String::from));
                     }
                 }
             }

@@ -70,6 +70,8 @@ pub struct Str {
 pub struct Tagged {
     pub name: Option<Sp<String>>,
     pub body: Body,
+    /// Nothing in it was unreadable, so that what is not there was not written.
+    pub is_whole: bool,
     /// The word and the opening bracket, for labels that should not cover many lines.
     pub head: Span,
 }

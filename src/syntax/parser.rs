@@ -27,7 +27,7 @@ pub(super) fn parse(text: &str, file: FileId, diagnostics: &mut Diagnostics) -> 
         faults.extend(repairs.faults);
     }
     disturbed.extend(lexed.broken_lines);
-    let mut parser = Parser { file, tokens, at: 0, depth: 0, disturbed, faults, duplicates: Vec::new() };
+    let mut parser = Parser { file, tokens, at: 0, depth: 0, disturbed, faults, troubles: 0, duplicates: Vec::new() };
     let is_hopeless = parser.tokens.len() == 1 && !parser.faults.is_empty();
     let node = if is_hopeless { parser.nothing() } else { parser.document() };
     let mut found: Vec<Diagnostic> = parser.faults.iter().map(|fault| diagnostic(fault, file)).collect();
@@ -58,6 +58,8 @@ struct Parser {
     /// Where complaints would only follow from a mistake that was reported.
     disturbed: Vec<Range<usize>>,
     faults: Vec<Fault>,
+    /// How often something was unreadable, also where nothing was said about it.
+    troubles: usize,
     duplicates: Vec<Diagnostic>,
 }
 
@@ -119,6 +121,7 @@ impl Parser {
     }
 
     fn fault(&mut self, fault: Fault) {
+        self.troubles += 1;
         if self.faults.len() >= MAX_FAULTS {
             return;
         }
@@ -190,7 +193,10 @@ impl Parser {
             TokenKind::Float(value) => Kind::Float(value),
             TokenKind::Str(value, inner, exact) => Kind::Str(Str { value, inner: self.span(inner), exact }),
             TokenKind::Char(c) => Kind::Char(c),
-            TokenKind::Bad => Kind::Invalid,
+            TokenKind::Bad => {
+                self.troubles += 1;
+                Kind::Invalid
+            }
             other => {
                 self.fault(expected_value(range.clone(), &other));
                 return Node { span: self.span(range), kind: Kind::Invalid };
@@ -211,7 +217,12 @@ impl Parser {
             _ if *self.peek() == TokenKind::Open(Bracket::Round) => {
                 return self.tagged(Some(Sp { value: name, span }));
             }
-            _ => Kind::Tagged(Tagged { name: Some(Sp { value: name, span }), body: Body::Unit, head: span }),
+            _ => Kind::Tagged(Tagged {
+                name: Some(Sp { value: name, span }),
+                body: Body::Unit,
+                is_whole: true,
+                head: span,
+            }),
         };
         Node { span, kind }
     }
@@ -389,6 +400,7 @@ impl Parser {
             Ok(open) => open,
             Err(node) => return node,
         };
+        let troubles = self.troubles;
         let mut entries = Vec::new();
         let end = self.entries(Bracket::Round, |parser| {
             let entry = parser.entry();
@@ -397,7 +409,8 @@ impl Parser {
         let start = name.as_ref().map_or(open.start, |n| n.span.start as usize);
         let head = self.span(start..open.end);
         let body = self.body(entries);
-        Node { span: self.span(start..end), kind: Kind::Tagged(Tagged { name, body, head }) }
+        let is_whole = self.troubles == troubles;
+        Node { span: self.span(start..end), kind: Kind::Tagged(Tagged { name, body, is_whole, head }) }
     }
 
     /// `name: value` or `value`.

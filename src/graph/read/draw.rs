@@ -108,7 +108,7 @@ fn geometry(d: &mut Decoder<'_>, fields: &Fields<'_>) -> Geometry {
                 .at(name.span, "not supported yet")
                 .hint("draw with `vertices`, `instances` and `indices`"),
         );
-    } else if fields.get("vertices").is_none() && fields.get("draw").is_none() && fields.get("indices").is_none() {
+    } else if fields.lacks(&["vertices", "draw", "indices"]) {
         d.push(
             Diagnostic::error(Code::MISSING_FIELD, "`Draw` lacks the field `vertices`, `indices` or `draw`")
                 .at(fields.head, "how many vertices?")

@@ -19,6 +19,9 @@ const OPERATORS: &[&str] = &["and", "or", "not"];
 /// What stands against a name, with the remedy.
 fn objection(name: &str) -> Option<(String, &'static str)> {
     let legal = "a name has letters, digits and `_`, does not begin with a digit, and is not `_` alone";
+    if name.is_empty() {
+        return Some(("a name has at least one letter".into(), legal));
+    }
     if !is_identifier(name) || name == "_" {
         return Some(("it is not an identifier".into(), legal));
     }
@@ -101,6 +104,9 @@ fn give(d: &mut Decoder<'_>, taken: &mut Taken, name: &Name, what: &'static str)
 fn walk(d: &mut Decoder<'_>, nodes: &[Node], taken: &mut Taken, counters: &[&Name]) {
     for node in nodes {
         match &node.kind {
+            NodeKind::Use(part) if part.name.span == part.graph.span => {
+                give(d, taken, &part.name, "a use without a `name`")
+            }
             NodeKind::Use(part) => give(d, taken, &part.name, "a use"),
             NodeKind::Repeat(repeat) => {
                 let mut counters = counters.to_vec();

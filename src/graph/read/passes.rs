@@ -40,7 +40,10 @@ fn pass(d: &mut Decoder<'_>, node: &Node, what: &str) -> Option<Pass> {
 pub(super) fn label(d: &mut Decoder<'_>, fields: &Fields<'_>) -> Option<Name> {
     let name = d.text(fields.get("name")?, &place(fields, "name"))?;
     if name.value.is_empty() || name.value.contains(|c: char| c == '/' || c.is_control()) {
-        let message = format!("{} cannot be called `{}`", fields.owner, name.value.escape_debug());
+        let message = match name.value.escape_debug().to_string() {
+            empty if empty.is_empty() => format!("the name of {} is empty", fields.owner),
+            text => format!("{} cannot be called `{text}`", fields.owner),
+        };
         let hint = "a pass's name is not empty and has no `/`, which separates it from the path of its part";
         d.push(Diagnostic::error(Code::BAD_NAME, message).at(name.span, "this name").hint(hint));
         return None;
@@ -106,6 +109,7 @@ fn compute(d: &mut Decoder<'_>, tag: &Tagged) -> Option<Compute> {
         }
         (Some((_, node)), None) => each(d, node),
         (None, Some((_, node))) => groups(d, node),
+        (None, None) if !fields.lacks(&["each", "groups"]) => None,
         (None, None) => {
             let message = "`Compute` lacks the field `each` or `groups`";
             d.push(
