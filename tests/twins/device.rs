@@ -64,8 +64,8 @@ pub struct Given<'a> {
     pub radius: f64,
     pub view: View,
     pub params: &'a [(&'a str, Value)],
-    /// Instance paths that are read back besides the outputs.
-    pub kept: &'a [&'a str],
+    /// Instance paths that are read back: what nobody asks for is not run.
+    pub read: &'a [&'a str],
 }
 
 /// A graph after its frame.
@@ -102,12 +102,11 @@ pub fn run<'a>(engine: &'a mut Engine, given: &Given<'_>) -> Done<'a> {
         params: given.params.iter().map(|(name, value)| ((*name).to_owned(), value.clone())).collect(),
         inputs: all.into_iter().filter(|(name, _)| asked(name)).collect(),
         capacities: BTreeMap::new(),
-        roots: given.kept.iter().map(|name| (*name).to_owned()).collect(),
+        roots: given.read.iter().map(|name| (*name).to_owned()).collect(),
         features: engine.gpu().features(),
         limits: engine.gpu().limits(),
     };
-    let plan =
-        instantiate(&program, &request).unwrap_or_else(|d| panic!("{}", render_all(&d, &sources, Style::Plain)));
+    let plan = instantiate(&program, &request).unwrap_or_else(|d| panic!("{}", render_all(&d, &sources, Style::Plain)));
     let mut runner = engine.prepare(plan, None).unwrap_or_else(|refused| panic!("{:#?}", refused.diagnostics));
     let bytes: Vec<u8> = given.positions.iter().flatten().flat_map(|x| x.to_le_bytes()).collect();
     for object in 0..runner.plan().objects.len() {

@@ -44,7 +44,7 @@ fn grid_holds(engine: &mut Engine, positions: &[[f32; 3]], cell_size: f64) {
         radius: cell_size / 4.0,
         view: VIEW,
         params: &[("cell_size", Value::Float(cell_size))],
-        kept: &[],
+        read: &["cell_start", "sorted"],
     };
     let done = device::run(engine, &given);
     let (min, max) = device::bounds(positions);
@@ -101,8 +101,8 @@ fn relative(found: f64, expected: f64, unit: f64) -> f64 {
 
 /// Moments, ellipsoids and classes of one set of particles.
 fn shapes_agree(engine: &mut Engine, positions: &[[f32; 3]], radius: f64) {
-    let given =
-        Given { graph: "graphs/parts/ellipsoids.ron", positions, radius, view: VIEW, params: &[], kept: &["is_body"] };
+    let read = &["moments", "ellipsoid", "is_body", "body", "splash"];
+    let given = Given { graph: "graphs/parts/ellipsoids.ron", positions, radius, view: VIEW, params: &[], read };
     let done = device::run(engine, &given);
     let (moments, ellipsoids, is_body) = (done.floats("moments"), done.floats("ellipsoid"), done.words("is_body"));
     let settings = shapes::Settings::of(radius);
@@ -184,7 +184,7 @@ pub fn ellipsoids_of_lone_and_heaped_particles(engine: &mut Engine) {
         radius: 0.025,
         view: VIEW,
         params: &[],
-        kept: &[],
+        read: &["ellipsoid", "moments"],
     };
     let done = device::run(engine, &given);
     assert!(done.floats("ellipsoid").iter().chain(&done.floats("moments")).all(|x| x.is_finite()));

@@ -48,7 +48,7 @@ impl Settings {
         Settings {
             radius,
             support: 4.0 * radius,
-            splash_below: 0.5,
+            splash_below: 0.4,
             splash_size: 1.0,
             body_size: 1.2,
             stretch_max: 1.2,
