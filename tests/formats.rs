@@ -407,16 +407,25 @@ mod spacing {
         (0..count).map(|_| std::array::from_fn(|_| random.below(1 << 20) as f32 / 1024.0)).collect()
     }
 
-    /// The same by comparing all with all.
+    /// The same by comparing all with all: the 32nd nearest of each, or the nearest of a few.
     fn by_hand(points: &[[f32; 3]]) -> f64 {
         let squared = |a: &[f32; 3], b: &[f32; 3]| -> f64 {
             a.iter().zip(b).map(|(a, b)| (f64::from(*a) - f64::from(*b)).powi(2)).sum()
         };
-        let nearest =
-            |p: &[f32; 3]| points.iter().map(|q| squared(p, q)).filter(|d| *d > 0.0).fold(f64::INFINITY, f64::min);
-        let mut all: Vec<f64> = points.iter().map(nearest).collect();
+        let few = points.len() < 256;
+        let ranked = |p: &[f32; 3]| {
+            let mut all: Vec<f64> = points.iter().map(|q| squared(p, q)).filter(|d| *d > 0.0).collect();
+            all.sort_by(f64::total_cmp);
+            all.get(if few { 0 } else { 31 }).copied()
+        };
+        let mut all: Vec<f64> = points.iter().filter_map(ranked).collect();
         all.sort_by(f64::total_cmp);
-        all[all.len() / 2].sqrt() / 2.0
+        if few {
+            return all[all.len() / 2].sqrt() / 2.0;
+        }
+        // 32 and a half of them share the ball.
+        let volume = 4.0 / 3.0 * std::f64::consts::PI * all[all.len() / 4].sqrt().powi(3);
+        (volume / 32.5).cbrt() / 2.0
     }
 
     #[test]
@@ -431,10 +440,14 @@ mod spacing {
         twice.extend(twice.clone());
         let mut far = random(300, 6);
         far.extend(vec![[7.0, 7.0, 7.0]; 900]);
-        for points in [random(2000, 1), flat, line, scattered, twice, far] {
+        for points in [random(2000, 1), random(200, 7), flat, line, scattered, twice] {
             let (found, expected) = (f64::from(estimate_radius(&points).unwrap()), by_hand(&points));
             assert!((found / expected - 1.0).abs() < 1.0e-6, "{found} {expected}");
         }
+        // Three quarters of them in one place count as one there.
+        let radius = f64::from(estimate_radius(&far).unwrap());
+        far.truncate(301);
+        assert!((radius / by_hand(&far) - 1.0).abs() < 0.5, "{radius}");
     }
 
     #[test]
@@ -446,7 +459,8 @@ mod spacing {
                 axis.clone().flat_map(move |y| (0..40_u8).map(move |z| [x, y, z].map(|v| f32::from(v) * 0.25)))
             })
             .collect();
-        assert_eq!(estimate_radius(&points), Some(0.125));
+        let radius = estimate_radius(&points).unwrap();
+        assert!((radius / 0.125 - 1.0).abs() < 0.02, "{radius}");
     }
 
     #[test]
@@ -458,6 +472,7 @@ mod spacing {
         let mut nearly = vec![[1.0; 3]; 100_000];
         nearly.push([1.0, 1.0, 2.0]);
         assert_eq!(estimate_radius(&nearly), Some(0.5));
+        assert_eq!(estimate_radius(&[[0.0; 3], [1.0, 0.0, 0.0]]), Some(0.5));
         assert_eq!(estimate_radius(&[[f32::MAX; 3], [f32::MIN; 3]]), None, "a radius beyond f32 is none");
     }
 }

@@ -33,23 +33,33 @@ pub fn moment(when: WhenArgs) -> Moment {
     }
 }
 
-/// A device that is being opened while files are read.
+/// A device that is being opened while files are read. Dropping it waits too: a program that ends
+/// while a driver is still setting itself up may never end.
 #[derive(Debug)]
-pub struct Opening(JoinHandle<Result<Gpu, Diagnostic>>);
+pub struct Opening(Option<JoinHandle<Result<Gpu, Diagnostic>>>);
 
 impl Opening {
     pub fn begin(backend: Option<&str>) -> Self {
         let options = GpuOptions { backend: backend.map(str::to_owned), ..GpuOptions::default() };
-        Self(thread::spawn(move || Gpu::open(&options)))
+        Self(Some(thread::spawn(move || Gpu::open(&options))))
     }
 
     /// # Errors
     /// If no adapter is usable.
-    pub fn wait(self) -> Result<Gpu, Diagnostic> {
-        self.0.join().unwrap_or_else(|_| {
+    pub fn wait(mut self) -> Result<Gpu, Diagnostic> {
+        self.0.take().and_then(|thread| thread.join().ok()).unwrap_or_else(|| {
             Err(Diagnostic::error(Code::DEVICE, "no usable graphics adapter: opening one failed")
                 .hint("another may work: `--backend NAME`"))
         })
+    }
+}
+
+impl Drop for Opening {
+    fn drop(&mut self) {
+        if let Some(thread) = self.0.take() {
+            // Whether it opened does not matter any more.
+            _ = thread.join();
+        }
     }
 }
 

@@ -161,7 +161,10 @@ impl Lowering<'_> {
         };
         let most = edges.iter().map(|e| e.0).chain([layers]).max().unwrap_or(1);
         if most > MAX_EDGE {
-            return refuse(format!("a texture of {most} texels or layers in one direction is more than any device takes"), size.first().map(|e| e.span));
+            return refuse(
+                format!("a texture of {most} texels or layers in one direction is more than any device takes"),
+                size.first().map(|e| e.span),
+            );
         }
         if samples != 1 && samples != 4 {
             return refuse(format!("samples must be 1 or 4, and is {samples}"), samples_given);
