@@ -1,6 +1,6 @@
 //! What is read is what was written: the short forms, the defaults, the order.
 
-use meniscus::diagnostic::{Sources, Style, render_all};
+use meniscus::diagnostic::{Code, Sources, Style, explain, render_all};
 use meniscus::graph::expr::ExprKind;
 use meniscus::graph::model::{
     Compare, Count, Draw, Extent, Factor, Graph, InputKind, Mips, NodeKind, Operation, ParamKind, ResourceKind,
@@ -214,4 +214,51 @@ fn one_bad_pass_hides_no_other() {
     let starts: Vec<u32> =
         diagnostics.iter().map(|d| d.labels.iter().find(|l| l.primary).unwrap().span.start).collect();
     assert!(starts.is_sorted(), "{starts:?}");
+}
+
+/// The graphs that the program carries are read as they are, and `ron` reads them too.
+#[test]
+fn shipped_graphs_read_without_errors() {
+    let mut folders = vec![root().join("graphs")];
+    let mut count = 0;
+    while let Some(folder) = folders.pop() {
+        for entry in std::fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                folders.push(path);
+            } else if path.extension().is_some_and(|e| e == "ron") {
+                let (graph, diagnostics, sources) = read(&path);
+                assert!(diagnostics.is_empty(), "{}", render_all(&diagnostics, &sources, Style::Plain));
+                assert!(graph.is_some());
+                std::fs::read_to_string(&path).unwrap().parse::<ron::Value>().unwrap();
+                count += 1;
+            }
+        }
+    }
+    assert!(count > 5, "only {count} graphs found");
+}
+
+/// `explain` has something to say about every id that reading and evaluating give.
+#[test]
+fn ids_of_form_and_expressions_are_explained() {
+    let ids = [
+        Code::FILE_MISSING,
+        Code::FILE_UNREADABLE,
+        Code::SYNTAX,
+        Code::UNKNOWN_FIELD,
+        Code::MISSING_FIELD,
+        Code::WRONG_VALUE,
+        Code::UNKNOWN_VARIANT,
+        Code::DUPLICATE,
+        Code::BAD_NAME,
+        Code::EXPRESSION_SYNTAX,
+        Code::EXPRESSION_TYPE,
+        Code::FRACTIONAL,
+        Code::NOT_KNOWN_WHEN_PLANNING,
+        Code::CYCLE,
+    ];
+    for id in ids {
+        let text = explain(id.as_str()).unwrap_or_default();
+        assert!(text.len() > 100, "`explain {}` says only {text:?}", id.as_str());
+    }
 }
