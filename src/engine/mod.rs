@@ -13,6 +13,7 @@ mod convert;
 mod encode;
 mod errors;
 mod gpu;
+mod join;
 mod kernels;
 mod mips;
 pub mod packing;

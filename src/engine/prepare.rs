@@ -9,6 +9,7 @@ use super::clear;
 use super::convert;
 use super::errors;
 use super::gpu::Gpu;
+use super::join;
 use super::kernels;
 use super::mips;
 use super::pipeline::{Pipeline, PipelineCache, Recipe, RecipeKind, Source, Stage};
@@ -37,6 +38,8 @@ pub struct Runner {
     pub(super) pipelines: Vec<Option<Arc<Pipeline>>>,
     pub(super) variants: Vec<Variants>,
     pub(super) rings_of: Vec<Vec<usize>>,
+    /// For each pass the first one of the render pass that it may share.
+    pub(super) leaders: Vec<usize>,
     pub(super) uniforms: Uniforms,
     pub(super) fixed: Fixed,
     pub(super) timing: Timing,
@@ -96,6 +99,7 @@ impl Engine {
             variants: plan.passes.iter().map(|_| Variants::new()).collect(),
             rings_of: plan.passes.iter().map(rings_of).collect(),
             timing: Timing::new(&self.gpu, &plan),
+            leaders: join::leaders(&plan, &pool),
             rotation,
             done,
             inputs_filled: false,

@@ -1,6 +1,7 @@
 //! Carrying out a frame: one encoder, passes in program order, `Steps` as often as asked.
 
 use std::collections::BTreeMap;
+use std::ops::Range;
 use std::time::Instant;
 
 use super::bind::{Bench, Variant, references};
@@ -11,7 +12,7 @@ use super::prepare::{Engine, Runner};
 use super::report::Report;
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::graph::value::Value;
-use crate::plan::model::{ObjectRef, Plan};
+use crate::plan::model::{ObjectRef, PassKind, Plan};
 
 /// What changes from frame to frame.
 #[derive(Clone, Copy)]
@@ -145,6 +146,12 @@ impl Runner {
         report
     }
 
+    /// Whether GPU times are taken, where the device can. Without them, adjacent draws with equal
+    /// targets become one render pass.
+    pub fn time_passes(&mut self, on: bool) {
+        self.timing.turn(on);
+    }
+
     /// How many steps each `Steps` has done since its reset.
     pub fn steps_done(&self) -> &[u64] {
         &self.done
@@ -194,16 +201,16 @@ impl Runner {
         let mut at = 0;
         while at < self.plan.passes.len() {
             let Some(block) = self.plan.steps.iter().position(|s| s.passes.contains(&at)) else {
-                self.encode_pass(gpu, frame, &mut recorder, at)?;
-                at += 1;
+                let next = (at..self.plan.passes.len()).find(|p| self.plan.steps.iter().any(|s| s.passes.start == *p));
+                let end = next.unwrap_or(self.plan.passes.len()).max(at + 1);
+                self.encode_range(gpu, frame, &mut recorder, at..end)?;
+                at = end;
                 continue;
             };
             let range = self.plan.steps[block].passes.clone();
             for info in steps.iter().filter(|info| info.steps == block) {
                 self.uniforms.begin_step(&mut recorder.encoder, block, &mut staged);
-                for pass in range.clone() {
-                    self.encode_pass(gpu, frame, &mut recorder, pass)?;
-                }
+                self.encode_range(gpu, frame, &mut recorder, range.clone())?;
                 self.turn(info);
             }
             at = range.end.max(at + 1);
@@ -213,26 +220,53 @@ impl Runner {
         Ok(())
     }
 
-    fn encode_pass(
+    fn encode_range(
         &mut self,
         gpu: &Gpu,
         frame: &Frame<'_>,
         recorder: &mut Recorder,
-        index: usize,
+        range: Range<usize>,
     ) -> Result<(), Diagnostic> {
-        if frame.only.is_some_and(|only| only.get(index) == Some(&false)) {
-            return Ok(());
+        let chosen = |index: &usize| frame.only.is_none_or(|only| only.get(*index) != Some(&false));
+        let chosen: Vec<usize> = range.filter(chosen).collect();
+        let together = |a: &usize, b: &usize| !self.timing.is_on() && self.leaders[*a] == self.leaders[*b];
+        for group in chosen.chunk_by(together).map(<[usize]>::to_vec).collect::<Vec<_>>() {
+            self.encode_group(gpu, recorder, &group)?;
         }
-        let key = self.ensure_variant(gpu, index)?;
-        let Some(variant) = self.variants[index].get(&key) else { return Ok(()) };
-        let pair = self.timing.mark(index, encode::can_be_timed(variant, self.timing.times_encoders()));
-        self.record(recorder, index, key, pair);
-        recorder.count(gpu);
         Ok(())
     }
 
-    fn record(&self, recorder: &mut Recorder, index: usize, key: usize, pair: Option<u32>) {
-        let Some(variant) = self.variants[index].get(&key) else { return };
+    /// Encodes a pass, or draws that share a render pass.
+    fn encode_group(&mut self, gpu: &Gpu, recorder: &mut Recorder, group: &[usize]) -> Result<(), Diagnostic> {
+        let mut keys = Vec::with_capacity(group.len());
+        for index in group {
+            keys.push(self.ensure_variant(gpu, *index)?);
+        }
+        if let ([index], [key]) = (group, &keys[..]) {
+            let timed =
+                self.variants[*index].get(key).is_some_and(|v| encode::can_be_timed(v, self.timing.times_encoders()));
+            let pair = self.timing.mark(*index, timed);
+            self.record(recorder, *index, *key, pair);
+        } else {
+            for index in group {
+                self.timing.mark(*index, false);
+            }
+            let parts = group.iter().zip(&keys).filter_map(|(index, key)| self.part(*index, *key));
+            encode::draw::encode(&mut self.encoding(recorder, None), &parts.collect::<Vec<_>>());
+        }
+        recorder.count(gpu, group.len());
+        Ok(())
+    }
+
+    fn part(&self, index: usize, key: usize) -> Option<encode::draw::Part<'_>> {
+        let pass = &self.plan.passes[index];
+        let (PassKind::Draw(draw), Variant::Draw(variant)) = (&pass.kind, self.variants[index].get(&key)?) else {
+            return None;
+        };
+        Some(encode::draw::Part { pass, draw, pipeline: self.pipelines[index].as_deref(), variant })
+    }
+
+    fn encoding<'a>(&'a self, recorder: &'a mut Recorder, pair: Option<u32>) -> Encoding<'a> {
         Encoding {
             encoder: &mut recorder.encoder,
             plan: &self.plan,
@@ -243,7 +277,12 @@ impl Runner {
             pair,
             loads_are_free: self.loads_are_free,
         }
-        .pass(&self.plan.passes[index], self.pipelines[index].as_deref(), variant);
+    }
+
+    fn record(&self, recorder: &mut Recorder, index: usize, key: usize, pair: Option<u32>) {
+        let Some(variant) = self.variants[index].get(&key) else { return };
+        let pipeline = self.pipelines[index].as_deref();
+        self.encoding(recorder, pair).pass(&self.plan.passes[index], pipeline, variant);
     }
 
     /// Makes what the pass needs for the current rotation, if it is not there.
@@ -313,9 +352,9 @@ impl Recorder {
         Self { encoder, passes: 0 }
     }
 
-    /// Counts a pass, and submits now and then.
-    fn count(&mut self, gpu: &Gpu) {
-        self.passes += 1;
+    /// Counts passes, and submits now and then.
+    fn count(&mut self, gpu: &Gpu, passes: usize) {
+        self.passes += passes;
         if self.passes >= PASSES_TO_A_SUBMISSION {
             std::mem::replace(self, Self::new(gpu)).submit(gpu);
         }

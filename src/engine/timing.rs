@@ -43,6 +43,8 @@ pub(super) struct Timing {
     resolved: Option<wgpu::Buffer>,
     pairs: u32,
     in_encoders: bool,
+    /// Whether anybody wants times.
+    wanted: bool,
     /// Nanoseconds to a tick.
     period: f32,
     stats_bytes: u64,
@@ -62,6 +64,7 @@ impl Timing {
             resolved: None,
             pairs: 0,
             in_encoders: features.contains(wgpu::Features::TIMESTAMP_QUERY_INSIDE_ENCODERS),
+            wanted: true,
             period: gpu.queue().get_timestamp_period(),
             stats_bytes: settles as u64 * 4,
             slots: Vec::new(),
@@ -120,12 +123,20 @@ impl Timing {
         self.captured = None;
     }
 
+    pub fn turn(&mut self, on: bool) {
+        self.wanted = on;
+    }
+
+    pub fn is_on(&self) -> bool {
+        self.wanted && self.pairs > 0
+    }
+
     /// Notes that a pass runs, and gives it a pair of queries if it is to be timed and there
     /// are any left.
     pub fn mark(&mut self, pass: usize, timed: bool) -> Option<u32> {
         self.now.runs[pass] += 1;
         let pair = self.now.marks.len() as u32;
-        if !timed || pair >= self.pairs {
+        if !timed || !self.wanted || pair >= self.pairs {
             return None;
         }
         self.now.marks.push(pass);

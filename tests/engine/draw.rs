@@ -49,9 +49,14 @@ pub fn two_draws_add_into_32_bit_floats(engine: &mut Engine) {
         plan.pass(name, PassKind::Draw(Box::new(draw)));
     }
     let mut runner = prepare(engine, plan);
-    run(engine, &mut runner);
-    // 0.25 + (1 + 2) + (1 + 2 + 3)
-    assert!(texels(engine, &runner, color, 0, 0).iter().all(|t| *t == [9.25, 2.5, 0.0, 5.0]));
+    // Each in a render pass of its own, then both in one.
+    for timed in [true, false] {
+        runner.time_passes(timed);
+        let report = run(engine, &mut runner);
+        assert_eq!(report.passes.iter().map(|p| p.gpu_ms.is_some()).collect::<Vec<_>>(), [timed; 2]);
+        // 0.25 + (1 + 2) + (1 + 2 + 3)
+        assert!(texels(engine, &runner, color, 0, 0).iter().all(|t| *t == [9.25, 2.5, 0.0, 5.0]));
+    }
 }
 
 pub fn minimum_and_masks_hold(engine: &mut Engine) {
@@ -343,4 +348,46 @@ var<storage, read_write> arguments: array<u32>;
     let mut runner = prepare(engine, plan);
     run(engine, &mut runner);
     assert_eq!(hits(engine, &runner, color), [1, 2, 5, 6]);
+}
+
+/// Equal targets, but the second draw reads what the first wrote: a buffer, or the depth.
+pub fn draws_that_need_each_other_share_no_render_pass(engine: &mut Engine) {
+    const WRITE: &str = "
+var<storage, read_write> note: array<u32>;
+@vertex fn vs(@builtin(vertex_index) v: u32) -> @builtin(position) vec4<f32> {
+    let c = vec2<f32>(f32((v << 1u) & 2u), f32(v & 2u));
+    return vec4<f32>(c * 2.0 - 1.0, 0.75, 1.0);
+}
+@fragment fn fs() -> @location(0) vec4<f32> { note[0] = 5u; return vec4<f32>(1.0); }";
+    const READ: &str = "
+var<storage, read> note: array<u32>;
+var d: texture_depth_2d;
+@vertex fn vs(@builtin(vertex_index) v: u32) -> @builtin(position) vec4<f32> {
+    let c = vec2<f32>(f32((v << 1u) & 2u), f32(v & 2u));
+    return vec4<f32>(c * 2.0 - 1.0, 0.75, 1.0);
+}
+@fragment fn fs(@builtin(position) p: vec4<f32>) -> @location(0) vec4<f32> {
+    return vec4<f32>(f32(note[0]), textureLoad(d, vec2<u32>(p.xy), 0), 0.0, 0.0);
+}";
+    let mut plan = new_plan();
+    let color = plan.texture("color", TextureFormat::Rgba32Float, 4, 4);
+    let buffer = plan.texture("depth", TextureFormat::Depth32Float, 4, 4);
+    let note = plan.buffer("note", 1);
+    let three = || Geometry::Direct { vertices: 3, instances: 1 };
+    let mut write = plan.draw("write", WRITE, &[("note", storage(note))], three());
+    for binding in &mut write.shader.bindings {
+        binding.stages = wgpu_types::ShaderStages::FRAGMENT;
+    }
+    write.color = vec![target(&plan, color, Some([0.0; 4]))];
+    write.depth = Some(depth(&plan, buffer, Compare::Greater, Some(0.0)));
+    plan.pass("write", PassKind::Draw(Box::new(write)));
+    let bound = [("note", read_only(note)), ("d", sampled(&plan, buffer))];
+    let mut read = plan.draw("read", READ, &bound, three());
+    read.color = vec![ColorTarget { blend: Some(add()), ..target(&plan, color, None) }];
+    read.depth = Some(DepthTarget { write: false, ..depth(&plan, buffer, Compare::GreaterEqual, None) });
+    plan.pass("read", PassKind::Draw(Box::new(read)));
+    let mut runner = prepare(engine, plan);
+    runner.time_passes(false);
+    run(engine, &mut runner);
+    assert!(texels(engine, &runner, color, 0, 0).iter().all(|t| *t == [6.0, 1.75, 1.0, 1.0]));
 }

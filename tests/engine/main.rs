@@ -33,6 +33,7 @@ fn main() -> ExitCode {
         draw::indices_choose_vertices,
         draw::counts_drive_draws,
         draw::a_shader_writes_draw_arguments,
+        draw::draws_that_need_each_other_share_no_render_pass,
         transfer::clears_touch_only_their_view,
         transfer::volumes_are_cleared_slice_by_slice,
         transfer::depth_is_cleared,

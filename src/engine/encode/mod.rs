@@ -4,7 +4,7 @@ mod arguments;
 mod clear;
 mod compute;
 mod copy;
-mod draw;
+pub(super) mod draw;
 mod mips;
 mod settle;
 
@@ -36,7 +36,9 @@ impl Encoding<'_> {
             (PassKind::Compute { dispatch, .. }, Variant::Compute(group)) => {
                 compute::encode(self, pass, dispatch, pipeline, group.as_ref());
             }
-            (PassKind::Draw(draw), Variant::Draw(variant)) => draw::encode(self, pass, draw, pipeline, variant),
+            (PassKind::Draw(draw), Variant::Draw(variant)) => {
+                draw::encode(self, &[draw::Part { pass, draw, pipeline, variant }]);
+            }
             (PassKind::Clear { view, .. }, Variant::Clear(variant)) => {
                 clear::encode(self, pass, view, pipeline, variant);
             }
