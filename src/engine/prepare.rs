@@ -93,13 +93,15 @@ impl Engine {
         let fixed = errors::scoped(&self.gpu, || Fixed::new(&self.gpu, &plan))
             .map_err(|e| Diagnostic::error(Code::DEVICE, format!("the device refused the engine's buffers: {e}")))?;
         let kept_inputs = (0..plan.objects.len()).map(|id| is_input(&plan, id) && pool.memory(id).is_some()).collect();
+        let leaders = join::leaders(&plan, &pool);
+        let draws_joined = leaders.iter().enumerate().filter(|(pass, leader)| pass != *leader).count();
         let (rotation, done) = progress(&plan, previous, &state_kept);
         let mut runner = Runner {
             pipelines,
             variants: plan.passes.iter().map(|_| Variants::new()).collect(),
             rings_of: plan.passes.iter().map(rings_of).collect(),
             timing: Timing::new(&self.gpu, &plan),
-            leaders: join::leaders(&plan, &pool),
+            leaders,
             rotation,
             done,
             inputs_filled: false,
@@ -108,6 +110,7 @@ impl Engine {
             build: BuildReport {
                 pipelines_built: self.cache.built,
                 pipelines_reused: self.cache.reused,
+                draws_joined,
                 memory_bytes: pool.bytes(),
                 state_kept: plan.steps.iter().map(|s| s.path.clone()).zip(state_kept).collect(),
             },

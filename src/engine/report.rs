@@ -61,6 +61,8 @@ impl Report {
 pub struct BuildReport {
     pub pipelines_built: usize,
     pub pipelines_reused: usize,
+    /// Draws that share the render pass of the one before them while nobody times passes.
+    pub draws_joined: usize,
     /// Bytes of textures and buffers that the runner holds. Inputs count from their first use.
     pub memory_bytes: u64,
     /// Of each `Steps`, whether its state went on from the runner before.

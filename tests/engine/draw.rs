@@ -49,6 +49,7 @@ pub fn two_draws_add_into_32_bit_floats(engine: &mut Engine) {
         plan.pass(name, PassKind::Draw(Box::new(draw)));
     }
     let mut runner = prepare(engine, plan);
+    assert_eq!(runner.build_report().draws_joined, 1);
     // Each in a render pass of its own, then both in one.
     for timed in [true, false] {
         runner.time_passes(timed);
@@ -387,6 +388,7 @@ var d: texture_depth_2d;
     read.depth = Some(DepthTarget { write: false, ..depth(&plan, buffer, Compare::GreaterEqual, None) });
     plan.pass("read", PassKind::Draw(Box::new(read)));
     let mut runner = prepare(engine, plan);
+    assert_eq!(runner.build_report().draws_joined, 0);
     runner.time_passes(false);
     run(engine, &mut runner);
     assert!(texels(engine, &runner, color, 0, 0).iter().all(|t| *t == [6.0, 1.75, 1.0, 1.0]));

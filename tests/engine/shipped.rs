@@ -3,7 +3,6 @@
 
 use std::collections::BTreeMap;
 use std::path::Path;
-use std::time::Instant;
 
 use glam::{Mat4, Vec3, Vec4};
 use meniscus::diagnostic::{Sources, Style, render_all};
@@ -120,9 +119,7 @@ fn upload(engine: &Engine, runner: &mut Runner, particles: &[Vec3]) {
 fn picture_of(engine: &mut Engine, graph: &str) {
     let particles = particles();
     let plan = plan(engine, graph, &particles);
-    let began = Instant::now();
     let mut runner = support::prepare(engine, plan);
-    let prepared = began.elapsed();
     upload(engine, &mut runner, &particles);
     let mut pictures = Vec::new();
     for poisoned in [false, true] {
@@ -136,12 +133,6 @@ fn picture_of(engine: &mut Engine, graph: &str) {
         let report = runner.finish(engine).unwrap_or_else(|d| panic!("{d:#?}"));
         assert_eq!(report.overflows().count(), 0, "{:?}", report.counts);
         assert!(report.passes.iter().all(|p| p.gpu_ms.is_some() != poisoned), "{report:?}");
-        eprintln!(
-            "{graph}: prepared in {prepared:.0?}, {:?}; encoded in {:.2} ms, {:.1} ms on the device",
-            runner.build_report(),
-            report.encode_ms,
-            report.gpu_ms().unwrap_or(f64::NAN)
-        );
         let color = runner.plan().outputs[0].object;
         pictures.push(runner.read_texture(engine, color, 0, Some(0)).expect("the picture"));
     }
