@@ -223,8 +223,3 @@ fn state_rules(lowering: &mut Lowering<'_>) -> Vec<Box<Diagnostic>> {
     }
     faults
 }
-
-/// The variable that an object is bound to, for "never read".
-pub(super) fn reads(flat: &[FlatPass], object: ObjectRef) -> bool {
-    flat.iter().flat_map(|f| &f.pass.accesses).any(|a| a.read && a.object == object)
-}

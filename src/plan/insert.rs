@@ -1,10 +1,10 @@
 //! The engine's own passes: settling counts, making mips, copying arguments.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeSet, HashMap};
 
 use super::lower::{FlatPass, Lowering, Place};
 use super::model::{
-    Access, Argument, ArgumentKind, Causes, Dispatch, Geometry, ObjectId, ObjectKind, ObjectRef, Pass, PassKind,
+    Access, Argument, ArgumentKind, Dispatch, Geometry, ObjectId, ObjectKind, ObjectRef, Pass, PassKind,
 };
 
 /// What has to be made before the next reader.
@@ -16,123 +16,163 @@ struct Pending {
     stale: BTreeSet<ObjectId>,
 }
 
-/// Puts the engine's passes into the flat list; gives the number of argument slots.
-pub(super) fn insert(lowering: &mut Lowering<'_>) -> u32 {
-    let mut out: Vec<FlatPass> = Vec::new();
-    let mut slots = 0;
-    let mut pending = Pending::default();
-    // A count from an earlier frame, or from outside, was not settled in this one.
-    for (id, building) in lowering.objects.iter().enumerate() {
-        if matches!(&building.object.kind, ObjectKind::Buffer(b) if b.counted) {
-            pending.unsettled.insert(id);
-        }
+impl Pending {
+    fn add(&mut self, other: &Pending) {
+        self.unsettled.extend(&other.unsettled);
+        self.stale.extend(&other.stale);
     }
-    let mut before_steps: Option<(usize, Pending)> = None;
-    for mut flat in std::mem::take(&mut lowering.flat) {
-        // A frame may run no step: what steps made must be made again after them.
-        if let Some((open, saved)) = &before_steps
-            && flat.pass.steps != Some(*open)
-        {
-            pending.unsettled.extend(&saved.unsettled);
-            pending.stale.extend(&saved.stale);
-            before_steps = None;
-        }
-        if let (None, Some(steps)) = (&before_steps, flat.pass.steps) {
-            before_steps = Some((steps, pending.clone()));
-        }
-        settle_before(lowering, &mut flat, &mut pending, &mut out, &mut slots);
-        mips_before(lowering, &flat, &mut pending, &mut out);
-        arguments_before(&mut flat, &mut out, &mut slots);
-        for (access, place) in flat.pass.accesses.iter().zip(&flat.places) {
-            let id = lowering.object_id(access.object);
-            if place.appends {
-                pending.unsettled.insert(id);
-            }
-            if access.write && lowering.objects[id].mips_auto {
-                pending.stale.insert(id);
-            }
-        }
-        out.push(flat);
-    }
-    lowering.flat = out;
-    slots
 }
 
-/// Settles every counted buffer that the pass reads, and gives it its slots.
-fn settle_before(
-    lowering: &Lowering<'_>,
-    flat: &mut FlatPass,
-    pending: &mut Pending,
-    out: &mut Vec<FlatPass>,
-    slots: &mut u32,
-) {
-    let reads: Vec<ObjectRef> = flat
-        .pass
-        .accesses
-        .iter()
-        .zip(&flat.places)
-        .filter(|(access, place)| access.read && !place.appends && is_counted(lowering, access.object))
-        .map(|(access, _)| access.object)
-        .chain(flat.counted.iter().map(|(object, _)| *object))
-        .collect();
-    for object in reads {
-        if pending.unsettled.remove(&lowering.object_id(object)) {
-            let kind = PassKind::Settle { counted: object, arguments: Vec::new() };
-            out.push(made(lowering, flat, "settle", object, kind));
+struct Inserter {
+    out: Vec<FlatPass>,
+    pending: Pending,
+    /// The `Steps` being walked, and what was pending before it.
+    before_steps: Option<(usize, Pending)>,
+    slots: u32,
+    /// Where each counted buffer was last settled, as an index into `out`.
+    settled: HashMap<ObjectRef, usize>,
+}
+
+/// Puts the engine's passes into the flat list; gives the number of argument slots.
+pub(super) fn insert(lowering: &mut Lowering<'_>) -> u32 {
+    let changed = changed_in_steps(lowering);
+    let mut inserter = Inserter {
+        out: Vec::new(),
+        pending: Pending::default(),
+        before_steps: None,
+        slots: 0,
+        settled: HashMap::new(),
+    };
+    // A count from an earlier frame, or from outside, was not settled in this one.
+    inserter.pending.unsettled =
+        (0..lowering.objects.len()).filter(|id| is_counted(lowering, ObjectRef::Fixed(*id))).collect();
+    for mut flat in std::mem::take(&mut lowering.flat) {
+        inserter.around_steps(flat.pass.steps, &changed);
+        inserter.settle_before(lowering, &mut flat);
+        inserter.mips_before(lowering, &flat);
+        inserter.arguments_before(&mut flat);
+        mark_changed(lowering, &flat, &mut inserter.pending, |object| vec![lowering.object_id(object)]);
+        inserter.out.push(flat);
+    }
+    lowering.flat = inserter.out;
+    inserter.slots
+}
+
+/// What the passes of each `Steps` change; of a ring that turns, every member.
+fn changed_in_steps(lowering: &Lowering<'_>) -> Vec<Pending> {
+    let mut changed = vec![Pending::default(); lowering.steps.len()];
+    for flat in &lowering.flat {
+        if let Some(steps) = flat.pass.steps {
+            mark_changed(lowering, flat, &mut changed[steps], |object| lowering.object_ids(object));
         }
     }
-    for (object, kind) in flat.counted.clone() {
-        let slot = *slots;
-        *slots += 1;
-        set_slot(&mut flat.pass.kind, slot);
-        let settle = out.iter_mut().rev().find_map(|f| match &mut f.pass.kind {
-            PassKind::Settle { counted, arguments } if *counted == object => Some(arguments),
-            _ => None,
-        });
-        if let Some(arguments) = settle {
-            arguments.push(Argument { slot, kind });
+    changed
+}
+
+fn mark_changed(
+    lowering: &Lowering<'_>,
+    flat: &FlatPass,
+    pending: &mut Pending,
+    ids: impl Fn(ObjectRef) -> Vec<ObjectId>,
+) {
+    for (access, place) in flat.pass.accesses.iter().zip(&flat.places) {
+        if place.appends && is_counted(lowering, access.object) {
+            pending.unsettled.extend(ids(access.object));
         }
+        if access.write && lowering.object(access.object).mips_auto {
+            pending.stale.extend(ids(access.object));
+        }
+    }
+}
+
+impl Inserter {
+    /// A step may follow another, and a frame may run no step: what steps change counts as
+    /// changed where they begin, and what was to be made before them still is after them.
+    fn around_steps(&mut self, now: Option<usize>, changed: &[Pending]) {
+        if let Some((open, saved)) = &self.before_steps
+            && now != Some(*open)
+        {
+            self.pending.add(saved);
+            // Arguments were written inside; a consumer behind needs its own even if no step runs.
+            self.pending.unsettled.extend(&changed[*open].unsettled);
+            self.before_steps = None;
+        }
+        if let (None, Some(steps)) = (&self.before_steps, now) {
+            self.before_steps = Some((steps, self.pending.clone()));
+            self.pending.add(&changed[steps]);
+        }
+    }
+
+    /// Settles every counted buffer that the pass reads, and gives it its slots.
+    fn settle_before(&mut self, lowering: &Lowering<'_>, flat: &mut FlatPass) {
+        let reads: Vec<ObjectRef> = flat
+            .pass
+            .accesses
+            .iter()
+            .zip(&flat.places)
+            .filter(|(access, place)| access.read && !place.appends && is_counted(lowering, access.object))
+            .map(|(access, _)| access.object)
+            .chain(flat.counted.iter().map(|(object, _)| *object))
+            .collect();
+        for object in reads {
+            if self.pending.unsettled.remove(&lowering.object_id(object)) {
+                let kind = PassKind::Settle { counted: object, arguments: Vec::new() };
+                self.settled.insert(object, self.out.len());
+                self.out.push(made(lowering, flat, "settle", object, kind));
+            }
+        }
+        for (object, kind) in flat.counted.clone() {
+            let slot = self.slots;
+            self.slots += 1;
+            set_slot(&mut flat.pass.kind, slot);
+            let settle = self.settled.get(&object).map(|at| &mut self.out[*at].pass.kind);
+            if let Some(PassKind::Settle { arguments, .. }) = settle {
+                arguments.push(Argument { slot, kind });
+            }
+        }
+    }
+
+    fn mips_before(&mut self, lowering: &Lowering<'_>, flat: &FlatPass) {
+        for (access, place) in flat.pass.accesses.iter().zip(&flat.places) {
+            if place.samples_mips && self.pending.stale.remove(&lowering.object_id(access.object)) {
+                let kind = PassKind::Mips { texture: access.object };
+                self.out.push(made(lowering, flat, "mips", access.object, kind));
+            }
+        }
+    }
+
+    /// A draw with arguments that a shader wrote gets a copy of them.
+    fn arguments_before(&mut self, flat: &mut FlatPass) {
+        let Some((from, offset, indexed)) = flat.arguments else { return };
+        let slot = self.slots;
+        self.slots += 1;
+        set_slot(&mut flat.pass.kind, slot);
+        let access = Access { object: from, mips: 0..1, layers: 0..1, read: true, write: false, whole: false };
+        let pass = Pass {
+            path: format!("{} (arguments)", flat.pass.path),
+            span: flat.pass.span,
+            unit: 0,
+            steps: flat.pass.steps,
+            kind: PassKind::Arguments { from, offset, indexed, slot },
+            accesses: vec![access],
+            unordered: false,
+        };
+        let places =
+            vec![Place { graph: flat.word, shader: None, name: String::new(), samples_mips: false, appends: false }];
+        self.out.push(FlatPass {
+            pass,
+            causes: flat.causes.clone(),
+            word: flat.word,
+            trace: flat.trace.clone(),
+            counted: Vec::new(),
+            arguments: None,
+            places,
+        });
     }
 }
 
 fn is_counted(lowering: &Lowering<'_>, object: ObjectRef) -> bool {
     matches!(&lowering.object(object).object.kind, ObjectKind::Buffer(b) if b.counted)
-}
-
-fn mips_before(lowering: &Lowering<'_>, flat: &FlatPass, pending: &mut Pending, out: &mut Vec<FlatPass>) {
-    for (access, place) in flat.pass.accesses.iter().zip(&flat.places) {
-        if place.samples_mips && pending.stale.remove(&lowering.object_id(access.object)) {
-            out.push(made(lowering, flat, "mips", access.object, PassKind::Mips { texture: access.object }));
-        }
-    }
-}
-
-fn arguments_before(flat: &mut FlatPass, out: &mut Vec<FlatPass>, slots: &mut u32) {
-    let Some((from, offset, indexed)) = flat.arguments else { return };
-    let slot = *slots;
-    *slots += 1;
-    set_slot(&mut flat.pass.kind, slot);
-    let access = Access { object: from, mips: 0..1, layers: 0..1, read: true, write: false, whole: false };
-    let pass = Pass {
-        path: format!("{} (arguments)", flat.pass.path),
-        span: flat.pass.span,
-        unit: 0,
-        steps: flat.pass.steps,
-        kind: PassKind::Arguments { from, offset, indexed, slot },
-        accesses: vec![access],
-        unordered: false,
-    };
-    let places =
-        vec![Place { graph: flat.word, shader: None, name: String::new(), samples_mips: false, appends: false }];
-    out.push(FlatPass {
-        pass,
-        causes: flat.causes.clone(),
-        word: flat.word,
-        trace: flat.trace.clone(),
-        counted: Vec::new(),
-        arguments: None,
-        places,
-    });
 }
 
 fn set_slot(kind: &mut PassKind, new: u32) {
@@ -172,7 +212,8 @@ fn made(lowering: &Lowering<'_>, reader: &FlatPass, what: &str, object: ObjectRe
             accesses: vec![access],
             unordered: false,
         },
-        causes: Causes::default(),
+        // Of an input, its version.
+        causes: building.causes.clone(),
         word: reader.word,
         trace: reader.trace.clone(),
         counted: Vec::new(),
@@ -183,14 +224,12 @@ fn made(lowering: &Lowering<'_>, reader: &FlatPass, what: &str, object: ObjectRe
 
 /// Steps cover the passes that came to lie in them.
 pub(super) fn cover_steps(lowering: &mut Lowering<'_>) {
-    for (index, steps) in lowering.steps.iter_mut().enumerate() {
-        let inside = |f: &FlatPass| f.pass.steps == Some(index);
-        let first = lowering.flat.iter().position(inside);
-        let last = lowering.flat.iter().rposition(inside);
-        steps.passes = match (first, last) {
-            (Some(first), Some(last)) => first..last + 1,
-            _ => 0..0,
-        };
+    for steps in &mut lowering.steps {
+        steps.passes = 0..0;
+    }
+    for (p, flat) in lowering.flat.iter().enumerate() {
+        let Some(steps) = flat.pass.steps.map(|index| &mut lowering.steps[index].passes) else { continue };
+        *steps = if steps.is_empty() { p } else { steps.start }..p + 1;
     }
 }
 

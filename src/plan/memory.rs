@@ -1,6 +1,11 @@
 //! Lifetimes, and which objects may share memory (rule 38).
 
-use super::model::{Buffer, Memory, Object, ObjectId, ObjectKind, Origin, Pass, Slot, Steps, Texture, Unit};
+use std::cmp::Reverse;
+use std::collections::{BTreeSet, BinaryHeap, HashMap};
+
+use wgpu_types::TextureUsages;
+
+use super::model::{Memory, Object, ObjectId, ObjectKind, Origin, Pass, Slot, Steps, Texture, Unit};
 use crate::format;
 
 /// The bytes of an object as this program counts them: what its texels or items take.
@@ -18,16 +23,11 @@ fn mip_bytes(t: &Texture, mip: u32) -> u64 {
     edge(t.width) * edge(t.height) * layers * texel * u64::from(t.samples)
 }
 
-/// Fills in lifetimes.
-pub(super) fn lifetimes(
-    objects: &mut [Object],
-    passes: &[Pass],
-    steps: &[Steps],
-    ids: &dyn Fn(&Pass) -> Vec<ObjectId>,
-) {
-    for (p, pass) in passes.iter().enumerate() {
-        for id in ids(pass) {
-            let lifetime = &mut objects[id].lifetime;
+/// Fills in lifetimes. `touched` has the objects of each pass.
+pub(super) fn lifetimes(objects: &mut [Object], touched: &[Vec<ObjectId>], steps: &[Steps]) {
+    for (p, ids) in touched.iter().enumerate() {
+        for id in ids {
+            let lifetime = &mut objects[*id].lifetime;
             *lifetime = Some(lifetime.map_or((p, p), |(first, _)| (first, p)));
         }
     }
@@ -42,70 +42,98 @@ pub(super) fn lifetimes(
     }
 }
 
-/// Which objects share memory under both policies. `own` are those that somebody looks at.
+/// Which objects share memory under both policies. `own` are outputs and what somebody looks at.
 pub(super) fn share(
     objects: &[Object],
     passes: &[Pass],
+    touched: &[Vec<ObjectId>],
     units: &[Unit],
-    own: &[ObjectId],
-    ids: &dyn Fn(&Pass) -> Vec<ObjectId>,
+    own: &BTreeSet<ObjectId>,
 ) -> Memory {
     let of_frame: Vec<ObjectId> = (0..objects.len())
         .filter(|id| objects[*id].origin == Origin::Frame && objects[*id].lifetime.is_some())
         .collect();
-    let same_causes = |id: ObjectId| {
-        let mut causes = passes.iter().filter(|pass| ids(pass).contains(&id)).map(|pass| &units[pass.unit].causes);
-        causes.next().is_none_or(|first| causes.all(|other| other == first))
-    };
-    let may_keep: Vec<bool> = (0..objects.len()).map(|id| !own.contains(&id) && same_causes(id)).collect();
     let may_always: Vec<bool> = (0..objects.len()).map(|id| !own.contains(&id)).collect();
+    let may_keep: Vec<bool> =
+        may_always.iter().zip(same_causes(objects.len(), passes, touched, units)).map(|(a, b)| *a && b).collect();
+    let keep = slots(objects, &of_frame, &may_keep);
+    let mut smallest = slots(objects, &of_frame, &may_always);
+    // More freedom may lead a greedy choice astray; what may be kept is good enough for both then.
+    if total(&smallest) > total(&keep) {
+        smallest.clone_from(&keep);
+    }
     Memory {
-        keep: slots(objects, &of_frame, &may_keep),
-        smallest: slots(objects, &of_frame, &may_always),
+        keep,
+        smallest,
         unshared: of_frame.iter().map(|id| bytes(&objects[*id].kind)).sum(),
         lower_bound: lower_bound(objects, &of_frame, own, passes.len()),
     }
 }
 
-/// Gives every object a slot, in order of first use: the free one of the nearest size, else a new one.
+/// Bytes of all slots together.
+pub fn total(slots: &[Slot]) -> u64 {
+    slots.iter().map(|slot| slot.bytes).sum()
+}
+
+/// For each object whether all units that touch it run for the same causes.
+fn same_causes(objects: usize, passes: &[Pass], touched: &[Vec<ObjectId>], units: &[Unit]) -> Vec<bool> {
+    let mut first: Vec<Option<usize>> = vec![None; objects];
+    let mut same = vec![true; objects];
+    for (pass, ids) in passes.iter().zip(touched) {
+        for id in ids {
+            let unit = *first[*id].get_or_insert(pass.unit);
+            same[*id] = same[*id] && (unit == pass.unit || units[unit].causes == units[pass.unit].causes);
+        }
+    }
+    same
+}
+
+/// Gives every object a slot, in order of first use: a free one of its class (the smallest that
+/// is large enough, else the largest), else a new one.
 fn slots(objects: &[Object], of_frame: &[ObjectId], may: &[bool]) -> Vec<Slot> {
     let mut order = of_frame.to_vec();
     order.sort_by_key(|id| (objects[*id].lifetime, *id));
-    let mut slots: Vec<(Slot, usize, bool)> = Vec::new();
+    let mut slots: Vec<Slot> = Vec::new();
+    // Slots in use by the pass at which they become free; free ones by class and size.
+    let mut busy: BinaryHeap<Reverse<(usize, usize)>> = BinaryHeap::new();
+    let mut free: HashMap<Option<Texture>, BTreeSet<(u64, usize)>> = HashMap::new();
     for id in order {
         let Some((first, last)) = objects[id].lifetime else { continue };
         let size = bytes(&objects[id].kind);
-        let free = slots
-            .iter_mut()
-            .filter(|(slot, end, open)| {
-                *open && may[id] && *end < first && fits(&objects[slot.objects[0]].kind, &objects[id].kind)
-            })
-            .min_by_key(|(slot, ..)| slot.bytes.abs_diff(size));
-        match free {
-            Some((slot, end, _)) => {
-                slot.objects.push(id);
-                slot.bytes = slot.bytes.max(size);
-                *end = last;
-            }
-            None => slots.push((Slot { objects: vec![id], bytes: size }, last, may[id])),
+        if !may[id] {
+            slots.push(Slot { objects: vec![id], bytes: size });
+            continue;
         }
+        while let Some(Reverse((_, slot))) = busy.peek().copied().filter(|Reverse((end, _))| *end < first) {
+            busy.pop();
+            let of = class(&objects[slots[slot].objects[0]].kind);
+            free.entry(of).or_default().insert((slots[slot].bytes, slot));
+        }
+        let found = free.get_mut(&class(&objects[id].kind)).and_then(|free| {
+            let found = free.range((size, 0)..).next().or_else(|| free.last()).copied()?;
+            free.remove(&found);
+            Some(found.1)
+        });
+        let slot = found.unwrap_or_else(|| {
+            slots.push(Slot { objects: Vec::new(), bytes: 0 });
+            slots.len() - 1
+        });
+        slots[slot].objects.push(id);
+        slots[slot].bytes = slots[slot].bytes.max(size);
+        busy.push(Reverse((last, slot)));
     }
-    slots.into_iter().map(|(slot, ..)| slot).collect()
+    slots
 }
 
 /// Textures share if they are described alike, buffers always: a slot is as large as its largest.
-fn fits(a: &ObjectKind, b: &ObjectKind) -> bool {
-    match (a, b) {
-        (ObjectKind::Texture(x), ObjectKind::Texture(y)) => {
-            (x.format, x.width, x.height, x.layers, x.is_3d, x.mips, x.samples)
-                == (y.format, y.width, y.height, y.layers, y.is_3d, y.mips, y.samples)
-        }
-        (ObjectKind::Buffer(Buffer { .. }), ObjectKind::Buffer(Buffer { .. })) => true,
-        _ => false,
+fn class(kind: &ObjectKind) -> Option<Texture> {
+    match kind {
+        ObjectKind::Texture(texture) => Some(Texture { usages: TextureUsages::empty(), ..texture.clone() }),
+        ObjectKind::Buffer(_) => None,
     }
 }
 
-fn lower_bound(objects: &[Object], of_frame: &[ObjectId], own: &[ObjectId], passes: usize) -> u64 {
+fn lower_bound(objects: &[Object], of_frame: &[ObjectId], own: &BTreeSet<ObjectId>, passes: usize) -> u64 {
     // Bytes that begin and end at each pass; a running sum is the live set.
     let mut change = vec![0i64; passes + 1];
     for id in of_frame {

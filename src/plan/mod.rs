@@ -73,11 +73,17 @@ fn finish(
 ) -> Result<Plan, Diagnostics> {
     let mut objects: Vec<Object> = lowering.objects.iter().map(|b| b.object.clone()).collect();
     let passes: Vec<Pass> = lowering.flat.iter().map(|f| f.pass.clone()).collect();
-    let touched = |pass: &Pass| -> Vec<ObjectId> {
-        pass.accesses.iter().flat_map(|a| lowering.object_ids(a.object)).collect::<BTreeSet<_>>().into_iter().collect()
-    };
-    memory::lifetimes(&mut objects, &passes, &lowering.steps, &touched);
-    let memory = memory::share(&objects, &passes, &units, roots, &touched);
+    let touched: Vec<Vec<ObjectId>> = passes
+        .iter()
+        .map(|pass| {
+            let all: BTreeSet<_> = pass.accesses.iter().flat_map(|a| lowering.object_ids(a.object)).collect();
+            all.into_iter().collect()
+        })
+        .collect();
+    memory::lifetimes(&mut objects, &touched, &lowering.steps);
+    let given = outputs.iter().flat_map(|output| lowering.object_ids(output.object));
+    let own: BTreeSet<ObjectId> = roots.iter().copied().chain(given).collect();
+    let memory = memory::share(&objects, &passes, &touched, &units, &own);
     let (needs, lacking) = needs::needs(&lowering, &objects);
     if lacking.has_errors() {
         lowering.diagnostics.extend(lacking);
@@ -221,11 +227,13 @@ fn unused(lowering: &Lowering<'_>, outputs: &[Output]) -> Diagnostics {
             given.extend(var.map(|var| lowering.vars[var].now));
         }
     }
+    let attached: BTreeSet<ObjectRef> = lowering.flat.iter().flat_map(|f| attached(&f.pass)).collect();
+    let read: BTreeSet<ObjectRef> =
+        lowering.flat.iter().flat_map(|f| &f.pass.accesses).filter(|a| a.read).map(|a| a.object).collect();
     for (id, building) in lowering.objects.iter().enumerate() {
         let object = ObjectRef::Fixed(id);
         let of_frame = building.object.origin == model::Origin::Frame;
-        let attached = lowering.flat.iter().any(|f| attached(&f.pass).contains(&object));
-        if of_frame && !attached && !given.contains(&object) && !flow::reads(&lowering.flat, object) {
+        if of_frame && !attached.contains(&object) && !given.contains(&object) && !read.contains(&object) {
             let message = format!("nothing reads `{}`", building.object.path);
             found.push(Diagnostic::warning(Code::NEVER_READ, message).at(building.object.span, "declared here"));
         }

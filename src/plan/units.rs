@@ -1,6 +1,6 @@
 //! Units: passes that run or are skipped together, and what makes them run (rule 37).
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet, HashMap, VecDeque};
 
 use super::lower::Lowering;
 use super::model::{Causes, ObjectId, Unit};
@@ -43,47 +43,130 @@ pub(super) fn units(lowering: &mut Lowering<'_>) -> Vec<Unit> {
             units.push(Unit::default());
             units.len() - 1
         });
-        let flat = &mut lowering.flat[p];
-        flat.pass.unit = unit;
+        lowering.flat[p].pass.unit = unit;
         units[unit].passes.push(p);
-        units[unit].causes.add(&flat.causes);
     }
-    let sources: Vec<Vec<usize>> = units
+    let readers = readers(lowering, &units, &producers);
+    let names = Names::new(lowering);
+    let mut bits: Vec<Bits> = units
         .iter()
-        .enumerate()
-        .map(|(u, unit)| {
-            let mut from: Vec<usize> =
-                unit.passes.iter().flat_map(|p| &producers[*p]).map(|p| lowering.flat[*p].pass.unit).collect();
-            from.sort_unstable();
-            from.dedup();
-            from.retain(|other| *other != u);
-            from
+        .map(|unit| {
+            let mut bits = names.none();
+            unit.passes.iter().for_each(|p| names.set(&mut bits, &lowering.flat[*p].causes));
+            bits
         })
         .collect();
-    close(&mut units, &sources);
+    close(&mut bits, &readers);
+    for (unit, bits) in units.iter_mut().zip(&bits) {
+        unit.causes = names.causes(bits);
+    }
     units
 }
 
-/// Adds to every unit the causes of those that it reads from, until nothing changes.
-fn close(units: &mut [Unit], sources: &[Vec<usize>]) {
-    loop {
-        let mut changed = false;
-        for u in 0..units.len() {
-            for from in &sources[u] {
-                let more: Causes = units[*from].causes.clone();
-                let before = size(&units[u].causes);
-                units[u].causes.add(&more);
-                changed |= size(&units[u].causes) != before;
+/// For each unit those that read from it, without itself.
+fn readers(lowering: &Lowering<'_>, units: &[Unit], producers: &[Vec<usize>]) -> Vec<Vec<usize>> {
+    let mut readers: Vec<Vec<usize>> = vec![Vec::new(); units.len()];
+    for (u, unit) in units.iter().enumerate() {
+        for from in unit.passes.iter().flat_map(|p| &producers[*p]).map(|p| lowering.flat[*p].pass.unit) {
+            if from != u && readers[from].last() != Some(&u) {
+                readers[from].push(u);
             }
         }
-        if !changed {
-            return;
+    }
+    readers
+}
+
+/// Hands every unit's causes on to its readers, until nothing changes.
+fn close(bits: &mut [Bits], readers: &[Vec<usize>]) {
+    let mut queue: VecDeque<usize> = (0..bits.len()).collect();
+    let mut queued = vec![true; bits.len()];
+    while let Some(from) = queue.pop_front() {
+        queued[from] = false;
+        let given = bits[from].clone();
+        for to in &readers[from] {
+            let mut changed = false;
+            for (have, more) in bits[*to].iter_mut().zip(&given) {
+                changed |= *more & !*have != 0;
+                *have |= more;
+            }
+            if changed && !std::mem::replace(&mut queued[*to], true) {
+                queue.push_back(*to);
+            }
         }
     }
 }
 
-fn size(causes: &Causes) -> usize {
-    causes.inputs.len() + causes.live.len() + causes.params.len() + usize::from(causes.viewport)
+/// A set of causes, as bits by [`Names`].
+type Bits = Vec<u64>;
+
+/// A kind of cause.
+#[derive(Clone, Copy, PartialEq, Eq, Hash)]
+enum Kind {
+    Input,
+    Live,
+    Param,
+    Viewport,
+}
+
+/// Every cause that a pass has by itself, by number: closing over sets of strings would take
+/// most of the time of planning.
+struct Names {
+    all: Vec<(Kind, String)>,
+    number: HashMap<(Kind, String), usize>,
+}
+
+impl Names {
+    fn new(lowering: &Lowering<'_>) -> Self {
+        let mut names = Self { all: Vec::new(), number: HashMap::new() };
+        for flat in &lowering.flat {
+            for (kind, name) in each(&flat.causes) {
+                let key = (kind, name.to_owned());
+                if !names.number.contains_key(&key) {
+                    names.number.insert(key.clone(), names.all.len());
+                    names.all.push(key);
+                }
+            }
+        }
+        names
+    }
+
+    fn none(&self) -> Bits {
+        vec![0; self.all.len().div_ceil(64)]
+    }
+
+    fn set(&self, bits: &mut Bits, causes: &Causes) {
+        for (kind, name) in each(causes) {
+            if let Some(n) = self.number.get(&(kind, name.to_owned())) {
+                bits[n / 64] |= 1 << (n % 64);
+            }
+        }
+    }
+
+    fn causes(&self, bits: &Bits) -> Causes {
+        let mut causes = Causes::default();
+        for (n, (kind, name)) in self.all.iter().enumerate() {
+            if bits[n / 64] & (1 << (n % 64)) == 0 {
+                continue;
+            }
+            match kind {
+                Kind::Input => _ = causes.inputs.insert(name.clone()),
+                Kind::Live => _ = causes.live.insert(name.clone()),
+                Kind::Param => _ = causes.params.insert(name.clone()),
+                Kind::Viewport => causes.viewport = true,
+            }
+        }
+        causes
+    }
+}
+
+fn each(causes: &Causes) -> impl Iterator<Item = (Kind, &str)> {
+    fn of(kind: Kind, names: &BTreeSet<String>) -> impl Iterator<Item = (Kind, &str)> {
+        names.iter().map(move |name| (kind, name.as_str()))
+    }
+    of(Kind::Input, &causes.inputs)
+        .chain(of(Kind::Live, &causes.live))
+        .chain(of(Kind::Param, &causes.params))
+        .chain(causes.viewport.then_some((Kind::Viewport, "")))
 }
 
 /// For each object a number that objects whose names swap share.
