@@ -4,7 +4,7 @@
 use std::collections::BTreeSet;
 
 use super::lower::{FlatPass, Lowering, Place, fault, traced};
-use super::model::{Access, Bound, ObjectId, ObjectKind, ObjectRef, Origin, PassKind};
+use super::model::{Access, Bound, ObjectId, ObjectKind, Origin, PassKind};
 use crate::diagnostic::{Code, Diagnostic};
 
 /// For each object, which (mip, layer) something wrote.

@@ -229,7 +229,7 @@ pub(super) fn cover_steps(lowering: &mut Lowering<'_>) {
     }
     for (p, flat) in lowering.flat.iter().enumerate() {
         let Some(steps) = flat.pass.steps.map(|index| &mut lowering.steps[index].passes) else { continue };
-        *steps = if steps.is_empty() { p } else { steps.start }..p + 1;
+        *steps = if steps.end == 0 { p } else { steps.start }..p + 1;
     }
 }
 

@@ -33,8 +33,12 @@ pub fn instantiate(program: &Program, request: &Request) -> Result<Plan, Diagnos
     plan(program, request, false)
 }
 
-/// The same for a file by itself: what nothing describes is made up, and every output counts.
-pub(crate) fn instantiate_stand_in(program: &Program, request: &Request) -> Result<Plan, Diagnostics> {
+/// The same for a file by itself, with [`crate::check::stand_in`]'s request: what nothing
+/// describes is made up, and every output counts.
+///
+/// # Errors
+/// As [`instantiate`].
+pub fn instantiate_stand_in(program: &Program, request: &Request) -> Result<Plan, Diagnostics> {
     plan(program, request, true)
 }
 

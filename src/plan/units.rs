@@ -100,7 +100,7 @@ fn close(bits: &mut [Bits], readers: &[Vec<usize>]) {
 type Bits = Vec<u64>;
 
 /// A kind of cause.
-#[derive(Clone, Copy, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy)]
 enum Kind {
     Input,
     Live,
@@ -112,18 +112,17 @@ enum Kind {
 /// most of the time of planning.
 struct Names {
     all: Vec<(Kind, String)>,
-    number: HashMap<(Kind, String), usize>,
+    number: [HashMap<String, usize>; 4],
 }
 
 impl Names {
     fn new(lowering: &Lowering<'_>) -> Self {
-        let mut names = Self { all: Vec::new(), number: HashMap::new() };
+        let mut names = Self { all: Vec::new(), number: Default::default() };
         for flat in &lowering.flat {
             for (kind, name) in each(&flat.causes) {
-                let key = (kind, name.to_owned());
-                if !names.number.contains_key(&key) {
-                    names.number.insert(key.clone(), names.all.len());
-                    names.all.push(key);
+                if !names.number[kind as usize].contains_key(name) {
+                    names.number[kind as usize].insert(name.to_owned(), names.all.len());
+                    names.all.push((kind, name.to_owned()));
                 }
             }
         }
@@ -136,7 +135,7 @@ impl Names {
 
     fn set(&self, bits: &mut Bits, causes: &Causes) {
         for (kind, name) in each(causes) {
-            if let Some(n) = self.number.get(&(kind, name.to_owned())) {
+            if let Some(n) = self.number[kind as usize].get(name) {
                 bits[n / 64] |= 1 << (n % 64);
             }
         }

@@ -16,14 +16,18 @@ pub fn bytes(n: u64) -> String {
     }
 }
 
-/// What an object is: format and size, or items.
+/// What an object is with its bytes.
 pub fn object(object: &Object) -> String {
-    let size = bytes(memory::bytes(&object.kind));
+    format!("{}, {}", shape(object), bytes(memory::bytes(&object.kind)))
+}
+
+/// What an object is: format and size, or items.
+pub(super) fn shape(object: &Object) -> String {
     match &object.kind {
-        ObjectKind::Texture(t) => format!("{} {}, {size}", format::name(t.format), texture_size(t)),
+        ObjectKind::Texture(t) => format!("{} {}", format::name(t.format), texture_size(t)),
         ObjectKind::Buffer(b) => {
-            let what = if b.counted { "counted, capacity" } else { "items" };
-            format!("{what} {} x {} B, {size}", b.items, b.stride)
+            let what = if b.counted { "up to " } else { "" };
+            format!("{what}{} x {} B", b.items, b.stride)
         }
     }
 }

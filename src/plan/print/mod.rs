@@ -1,7 +1,14 @@
-//! Plans as text, for people and for tests.
+//! Plans as text, for people and for tests; as JSON, for programs; as DOT and SVG, to look at.
 
 mod describe;
+mod dot;
+mod json;
+mod rows;
+mod svg;
 mod text;
 
 pub use describe::{bytes, object, pass};
+pub use dot::dot;
+pub use json::json;
+pub use svg::svg;
 pub use text::text;

@@ -1,11 +1,17 @@
 //! A plan as text: order, units and why they run, resources with their lifetimes, memory, needs.
 
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 
+use super::rows::{self, Row, rows, shared};
 use super::describe;
 use crate::graph::value::Value;
-use crate::plan::model::{Causes, Object, Origin, Pass, Plan, Slot};
+use crate::plan::memory::total;
+use crate::plan::model::{Causes, ObjectId, Origin, Plan};
 use crate::plan::needs::feature_names;
+
+/// Names longer than this push what follows out of its column.
+const WIDEST: usize = 40;
 
 /// The whole plan as text.
 pub fn text(plan: &Plan) -> String {
@@ -14,6 +20,7 @@ pub fn text(plan: &Plan) -> String {
     _ = writeln!(out, "plan of {} at {w} x {h}\n", plan.graph.display());
     passes(plan, &mut out);
     units(plan, &mut out);
+    steps(plan, &mut out);
     resources(plan, &mut out);
     memory(plan, &mut out);
     needs(plan, &mut out);
@@ -23,61 +30,84 @@ pub fn text(plan: &Plan) -> String {
 }
 
 fn passes(plan: &Plan, out: &mut String) {
-    _ = writeln!(out, "passes: {} in program order", plan.passes.len());
-    let paths: Vec<&str> = plan.passes.iter().map(|p| p.path.as_str()).collect();
-    let width = paths.iter().map(|p| p.len()).max().unwrap_or(0).min(40);
-    for (p, pass) in plan.passes.iter().enumerate() {
-        let mark = if pass.unordered { " ~" } else { "" };
-        let steps = if pass.steps.is_some() { " (step)" } else { "" };
-        _ = writeln!(out, "  {p:>3}  u{:<3} {:width$}  {}{steps}{mark}", pass.unit, pass.path, describe::pass(pass));
-        _ = writeln!(out, "            {}", flow(plan, pass));
+    let culled = if plan.culled.is_empty() { String::new() } else { format!(", {} culled", plan.culled.len()) };
+    _ = writeln!(out, "passes: {} in program order{culled}; below each what it reads -> what it writes", plan.passes.len());
+    let rows = rows(plan);
+    let width = rows.iter().map(|row| rows::path(plan, row).len()).max().unwrap_or(0).min(WIDEST);
+    for row in &rows {
+        if row.stride > 1 && row.first == row.all.start {
+            let (first, last) = (row.all.start, row.all.end - 1);
+            _ = writeln!(out, "       passes {first} to {last}: these {}, {} times", row.stride, row.times);
+        }
+        pass(plan, row, width, out);
     }
     if plan.passes.iter().any(|p| p.unordered) {
         _ = writeln!(out, "  ~ the order of atomics may show in what it writes");
     }
+    let width = plan.culled.iter().map(|culled| culled.path.len()).max().unwrap_or(0).min(WIDEST);
     for culled in &plan.culled {
-        _ = writeln!(out, "  culled {}: {}", culled.path, culled.why);
+        _ = writeln!(out, "  culled  {:width$}  {}", culled.path, culled.why);
     }
     out.push('\n');
 }
 
-fn flow(plan: &Plan, pass: &Pass) -> String {
+fn pass(plan: &Plan, row: &Row, width: usize, out: &mut String) {
+    let pass = &plan.passes[row.first];
+    let mark = if pass.unordered { " ~" } else { "" };
+    let steps = if pass.steps.is_some() { " (each step)" } else { "" };
+    let unit = format!("u{}", pass.unit);
+    let (path, what) = (rows::path(plan, row), rows::what(plan, row));
+    _ = writeln!(out, "  {:>4} {unit:<5} {path:width$}  {what}{steps}{mark}", row.first);
     let side = |read: bool| {
-        let mut names: Vec<String> = pass
-            .accesses
-            .iter()
-            .filter(|a| if read { a.read } else { a.write })
-            .map(|a| describe::access(plan, a))
-            .collect();
-        names.dedup();
-        if names.is_empty() { "-".to_owned() } else { names.join(", ") }
+        let names = rows::sides(plan, row, read);
+        if names.is_empty() { "nothing".to_owned() } else { names.join(", ") }
     };
-    format!("{} -> {}", side(true), side(false))
+    _ = writeln!(out, "               {} -> {}", side(true), side(false));
 }
 
 fn units(plan: &Plan, out: &mut String) {
-    _ = writeln!(out, "units: {}, each runs when one of its causes changes", plan.units.len());
-    for (u, unit) in plan.units.iter().enumerate() {
-        let numbers: Vec<String> = unit.passes.iter().map(usize::to_string).collect();
-        let numbers = if numbers.len() > 6 {
-            format!("{}, ... {}", numbers[..4].join(", "), numbers[numbers.len() - 1])
-        } else {
-            numbers.join(", ")
-        };
-        _ = writeln!(out, "  u{u:<3} passes {numbers}: {}", causes(&unit.causes));
+    _ = writeln!(out, "units: {}; the passes of a unit run together, when one of its causes changes", plan.units.len());
+    let lines: Vec<(String, String)> = plan
+        .units
+        .iter()
+        .map(|unit| {
+            let what = if unit.passes.len() == 1 { "pass" } else { "passes" };
+            (format!("{what} {}", ranges(&unit.passes)), causes(&unit.causes))
+        })
+        .collect();
+    let width = lines.iter().map(|(passes, _)| passes.len()).max().unwrap_or(0).min(WIDEST);
+    for (u, (passes, causes)) in lines.iter().enumerate() {
+        _ = writeln!(out, "  {:<5} {passes:width$}  {causes}", format!("u{u}"));
     }
     out.push('\n');
+}
+
+/// `3, 5 to 9`.
+fn ranges(numbers: &[usize]) -> String {
+    let mut parts: Vec<(usize, usize)> = Vec::new();
+    for n in numbers {
+        match parts.last_mut() {
+            Some((_, last)) if *last + 1 == *n => *last = *n,
+            _ => parts.push((*n, *n)),
+        }
+    }
+    let text = |(a, b): &(usize, usize)| match b - a {
+        0 => a.to_string(),
+        1 => format!("{a}, {b}"),
+        _ => format!("{a} to {b}"),
+    };
+    parts.iter().map(text).collect::<Vec<_>>().join(", ")
 }
 
 /// Causes in one line.
 pub(super) fn causes(causes: &Causes) -> String {
     let mut parts = Vec::new();
-    let join = |set: &std::collections::BTreeSet<String>| set.iter().cloned().collect::<Vec<_>>().join(", ");
+    let join = |set: &BTreeSet<String>| set.iter().cloned().collect::<Vec<_>>().join(", ");
     if !causes.inputs.is_empty() {
         parts.push(format!("inputs {}", join(&causes.inputs)));
     }
     if !causes.live.is_empty() {
-        parts.push(format!("frame {}", join(&causes.live)));
+        parts.push(format!("frame {}", fields(&causes.live)));
     }
     if !causes.params.is_empty() {
         parts.push(format!("parameters {}", join(&causes.params)));
@@ -88,48 +118,109 @@ pub(super) fn causes(causes: &Causes) -> String {
     if parts.is_empty() { "nothing: it runs once".to_owned() } else { parts.join("; ") }
 }
 
-fn resources(plan: &Plan, out: &mut String) {
-    _ = writeln!(out, "resources:");
-    let width = plan.objects.iter().map(|o| o.path.len()).max().unwrap_or(0).min(40);
-    for object in &plan.objects {
-        _ = writeln!(out, "  {:width$}  {}{}", object.path, describe::object(object), origin(plan, object));
+/// Fields of one input together: `camera.(far, near), time`.
+fn fields(live: &BTreeSet<String>) -> String {
+    let mut of: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
+    for name in live {
+        let (input, field) = name.split_once('.').unwrap_or((name, ""));
+        of.entry(input).or_default().push(field);
     }
-    let outputs: Vec<String> = plan.outputs.iter().map(|o| o.name.clone()).collect();
+    let text = |(input, fields): (&str, Vec<&str>)| match fields.as_slice() {
+        [""] => input.to_owned(),
+        [field] => format!("{input}.{field}"),
+        fields => format!("{input}.({})", fields.join(", ")),
+    };
+    of.into_iter().map(text).collect::<Vec<_>>().join(", ")
+}
+
+fn steps(plan: &Plan, out: &mut String) {
+    if plan.steps.is_empty() {
+        return;
+    }
+    _ = writeln!(out, "steps:");
+    for (index, steps) in plan.steps.iter().enumerate() {
+        let rate = steps.rate.map_or("once a frame".to_owned(), |rate| format!("{rate} Hz"));
+        let passes = match steps.passes.len() {
+            0 => "no passes".to_owned(),
+            _ => format!("passes {}", ranges(&steps.passes.clone().collect::<Vec<_>>())),
+        };
+        _ = writeln!(out, "  {}  {rate}, {passes}", steps.path);
+        let state: Vec<&str> = steps.state.iter().map(|id| plan.objects[*id].path.as_str()).collect();
+        if !state.is_empty() {
+            _ = writeln!(out, "    state {}", state.join(", "));
+        }
+        for ring in plan.rings.iter().filter(|ring| ring.steps == index) {
+            let names: Vec<&str> = ring.objects.iter().map(|id| plan.objects[*id].path.as_str()).collect();
+            _ = writeln!(out, "    {} turn by {} after each step", names.join(", "), ring.turn);
+        }
+    }
+    out.push('\n');
+}
+
+fn resources(plan: &Plan, out: &mut String) {
+    _ = writeln!(out, "resources: {}; with the passes that they live in", plan.objects.len());
+    let shapes: Vec<String> = plan.objects.iter().map(describe::shape).collect();
+    let names = plan.objects.iter().map(|o| o.path.len()).max().unwrap_or(0).min(WIDEST);
+    let width = shapes.iter().map(String::len).max().unwrap_or(0).min(WIDEST);
+    let shared = shared(plan);
+    for (id, object) in plan.objects.iter().enumerate() {
+        let life = match object.lifetime {
+            Some((first, last)) if first == last => format!("{first}"),
+            Some((first, last)) => format!("{first} to {last}"),
+            None => "unused".to_owned(),
+        };
+        let (shape, size) = (&shapes[id], rows::size(plan, id));
+        let notes = notes(plan, id, shared.get(&id)).join(", ");
+        let line = format!("  {:names$}  {shape:width$}  {size:>10}  {life:<12} {notes}", object.path);
+        _ = writeln!(out, "{}", line.trim_end());
+    }
+    let outputs: Vec<String> = (plan.outputs.iter())
+        .map(|output| match describe::name(plan, output.object) {
+            same if same == output.name => same,
+            other => format!("{} ({other})", output.name),
+        })
+        .collect();
     _ = writeln!(out, "  outputs: {}\n", outputs.join(", "));
 }
 
-fn origin(plan: &Plan, object: &Object) -> String {
-    let lifetime = match object.lifetime {
-        Some((first, last)) => format!(", passes {first} to {last}"),
-        None => ", unused".to_owned(),
-    };
-    match &object.origin {
-        Origin::Frame => lifetime,
+/// What is special about an object.
+fn notes(plan: &Plan, id: ObjectId, shared: Option<&String>) -> Vec<String> {
+    let mut notes = Vec::new();
+    match &plan.objects[id].origin {
+        Origin::Frame => {}
         Origin::State(steps) => {
-            let path = plan.steps.get(*steps).map_or("?", |s| s.path.as_str());
-            format!("{lifetime}, state of {path}")
+            let path = plan.steps.get(*steps).map_or("no steps", |s| s.path.as_str());
+            notes.push(format!("state of {path}"));
         }
-        Origin::Input(input) => format!("{lifetime}, input {input}"),
+        Origin::Input(input) => notes.push(format!("input {input}")),
         Origin::Attribute { input, present, .. } => {
             let absent = if *present { "" } else { " (absent: zeros)" };
-            format!("{lifetime}, attribute of {input}{absent}")
+            notes.push(format!("attribute of {input}{absent}"));
         }
     }
+    if plan.outputs.iter().any(|output| rows::id(plan, output.object) == id) {
+        notes.push("output".to_owned());
+    }
+    notes.extend(shared.map(|label| format!("shares {label}")));
+    notes
 }
 
 fn memory(plan: &Plan, out: &mut String) {
-    let total = |slots: &[Slot]| slots.iter().map(|s| s.bytes).sum::<u64>();
     let memory = &plan.memory;
     _ = writeln!(out, "memory of the frame:");
-    _ = writeln!(out, "  {} without sharing", describe::bytes(memory.unshared));
-    for (policy, slots) in [("keep", &memory.keep), ("smallest", &memory.smallest)] {
-        _ = writeln!(out, "  {} under the policy \"{policy}\"", describe::bytes(total(slots)));
-        for slot in slots.iter().filter(|s| s.objects.len() > 1) {
+    _ = writeln!(out, "  {:>10}  without sharing", describe::bytes(memory.unshared));
+    for (policy, what, slots) in [
+        ("keep", "what skipping needs is kept", &memory.keep),
+        ("smallest", "every unit runs each frame", &memory.smallest),
+    ] {
+        _ = writeln!(out, "  {:>10}  under the policy \"{policy}\": {what}", describe::bytes(total(slots)));
+        for (n, slot) in slots.iter().filter(|s| s.objects.len() > 1).enumerate() {
             let names: Vec<&str> = slot.objects.iter().map(|id| plan.objects[*id].path.as_str()).collect();
-            _ = writeln!(out, "    shared: {}", names.join(", "));
+            let label = if policy == "keep" { format!("m{n}: ") } else { String::new() };
+            _ = writeln!(out, "  {:>10}    {label}{}", describe::bytes(slot.bytes), names.join(", "));
         }
     }
-    _ = writeln!(out, "  {} in the largest live set\n", describe::bytes(memory.lower_bound));
+    _ = writeln!(out, "  {:>10}  in the largest live set: no plan can hold less\n", describe::bytes(memory.lower_bound));
 }
 
 fn needs(plan: &Plan, out: &mut String) {
@@ -153,6 +244,7 @@ fn params(plan: &Plan, out: &mut String) {
         return;
     }
     _ = writeln!(out, "parameters:");
+    let width = plan.params.iter().map(|param| param.path.len()).max().unwrap_or(0).min(WIDEST);
     for param in &plan.params {
         let unit = param.unit.as_ref().map_or(String::new(), |u| format!(" {u}"));
         let range = match (&param.min, &param.max) {
@@ -165,7 +257,7 @@ fn params(plan: &Plan, out: &mut String) {
             Some(default) if *default != param.value && !same(default, &param.value) => format!(" (default {default})"),
             _ => String::new(),
         };
-        _ = writeln!(out, "  {} = {}{unit}{range}{changed}", param.path, param.value);
+        _ = writeln!(out, "  {:width$}  {}{unit}{range}{changed}", param.path, param.value);
     }
     out.push('\n');
 }
@@ -181,7 +273,8 @@ fn same(a: &Value, b: &Value) -> bool {
 
 fn files(plan: &Plan, out: &mut String) {
     _ = writeln!(out, "files:");
+    let width = plan.taken.keys().map(String::len).max().unwrap_or(0).min(WIDEST);
     for (name, path) in &plan.taken {
-        _ = writeln!(out, "  {name} from {}", path.display());
+        _ = writeln!(out, "  {name:width$}  {}", path.display());
     }
 }
