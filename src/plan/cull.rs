@@ -1,18 +1,20 @@
 //! Passes that nothing needs are left out, and said.
 
+use std::collections::BTreeSet;
+
 use super::flow::subresources;
 use super::lower::Lowering;
 use super::model::{Culled, ObjectId, Origin};
 
 /// Keeps the passes that the roots need; gives back those that were left out.
 pub(super) fn cull(lowering: &mut Lowering<'_>, roots: &[ObjectId]) -> Vec<Culled> {
-    let mut state_read: Vec<ObjectId> = Vec::new();
+    let mut carried = Carried { state: Vec::new(), steps: vec![Vec::new(); lowering.steps.len()] };
     let live = loop {
-        let (live, read) = live_passes(lowering, roots, &state_read);
-        if read == state_read {
+        let (live, read) = live_passes(lowering, roots, &carried);
+        if read == carried {
             break live;
         }
-        state_read = read;
+        carried = read;
     };
     let mut culled = Vec::new();
     let mut kept = Vec::new();
@@ -39,10 +41,21 @@ pub(super) fn cull(lowering: &mut Lowering<'_>, roots: &[ObjectId]) -> Vec<Culle
     culled
 }
 
-/// Which passes are live if the roots and the given state are needed after the last pass, and
-/// the state that these read.
-fn live_passes(lowering: &Lowering<'_>, roots: &[ObjectId], state: &[ObjectId]) -> (Vec<bool>, Vec<ObjectId>) {
-    let mut needed: Vec<Vec<bool>> = lowering
+/// For each object, which of its subresources.
+type Parts = Vec<Vec<bool>>;
+
+/// What is needed after it was last written in the list, because something runs again.
+#[derive(PartialEq)]
+struct Carried {
+    /// State that a live pass reads: the next frame's does too.
+    state: Vec<ObjectId>,
+    /// For each `Steps` what a step reads before it writes it: of objects, the subresources.
+    steps: Vec<Vec<(ObjectId, usize)>>,
+}
+
+/// Which passes are live if the roots and what is carried are needed, and what these carry.
+fn live_passes(lowering: &Lowering<'_>, roots: &[ObjectId], carried: &Carried) -> (Vec<bool>, Carried) {
+    let mut needed: Parts = lowering
         .objects
         .iter()
         .map(|b| match &b.object.kind {
@@ -50,13 +63,22 @@ fn live_passes(lowering: &Lowering<'_>, roots: &[ObjectId], state: &[ObjectId]) 
             super::model::ObjectKind::Buffer(_) => vec![false],
         })
         .collect();
-    for id in roots.iter().chain(state) {
+    for id in roots.iter().chain(&carried.state) {
         needed[*id].fill(true);
     }
     let is_state = |id: ObjectId| matches!(lowering.objects[id].object.origin, Origin::State(_));
     let mut live = vec![false; lowering.flat.len()];
-    let mut state_read = Vec::new();
+    let mut state = Vec::new();
+    let mut steps: Vec<BTreeSet<(ObjectId, usize)>> = vec![BTreeSet::new(); lowering.steps.len()];
+    let mut open = None;
     for (p, flat) in lowering.flat.iter().enumerate().rev() {
+        // From behind, a block of steps begins with what the next step will read.
+        if flat.pass.steps != open {
+            open = flat.pass.steps;
+            for (id, sub) in open.iter().flat_map(|index| &carried.steps[*index]) {
+                needed[*id][*sub] = true;
+            }
+        }
         let wanted = flat.pass.accesses.iter().filter(|a| a.write).any(|access| {
             lowering
                 .object_ids(access.object)
@@ -69,10 +91,12 @@ fn live_passes(lowering: &Lowering<'_>, roots: &[ObjectId], state: &[ObjectId]) 
         live[p] = true;
         for access in flat.pass.accesses.iter().filter(|a| a.whole) {
             let id = lowering.object_id(access.object);
-            // What a step wrote is still there in the next frame, and no step may run in this one.
-            if !is_state(id) && flat.pass.steps.is_none() {
-                for sub in subresources(lowering, id, access, false) {
-                    needed[id][sub] = false;
+            for sub in subresources(lowering, id, access, false) {
+                match open {
+                    // What a step wrote is still there in the next frame, and no step may run in this one.
+                    Some(index) => _ = steps[index].remove(&(id, sub)),
+                    None if !is_state(id) => needed[id][sub] = false,
+                    None => {}
                 }
             }
         }
@@ -80,13 +104,15 @@ fn live_passes(lowering: &Lowering<'_>, roots: &[ObjectId], state: &[ObjectId]) 
             for id in lowering.object_ids(access.object) {
                 for sub in subresources(lowering, id, access, place.samples_mips) {
                     needed[id][sub] = true;
+                    steps.get_mut(open.unwrap_or(usize::MAX)).map(|inside| inside.insert((id, sub)));
                 }
-                if is_state(id) && !state_read.contains(&id) {
-                    state_read.push(id);
+                if is_state(id) {
+                    state.push(id);
                 }
             }
         }
     }
-    state_read.sort_unstable();
-    (live, state_read)
+    state.sort_unstable();
+    state.dedup();
+    (live, Carried { state, steps: steps.into_iter().map(|inside| inside.into_iter().collect()).collect() })
 }

@@ -416,6 +416,18 @@ pub struct Causes {
     pub viewport: bool,
 }
 
+impl Causes {
+    /// How many there are.
+    pub fn len(&self) -> usize {
+        self.inputs.len() + self.live.len() + self.params.len() + usize::from(self.viewport)
+    }
+
+    /// Whether there is none: what has none runs once.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+}
+
 #[derive(Clone, Debug, PartialEq)]
 pub struct Culled {
     pub path: String,

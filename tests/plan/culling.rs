@@ -8,7 +8,9 @@ fn fill(name: &str, dst: &str) -> String {
 }
 
 fn with(shader: &str, name: &str, dst: &str, src: &str) -> String {
-    format!(r#"Compute(name: "{name}", shader: "{shader}", each: Item("{dst}"), bind: {{"dst": "{dst}", "src": "{src}"}}),"#)
+    format!(
+        r#"Compute(name: "{name}", shader: "{shader}", each: Item("{dst}"), bind: {{"dst": "{dst}", "src": "{src}"}}),"#
+    )
 }
 
 const AB: &str = r#""a": Buffer(items: 100), "b": Buffer(items: 100), "c": Buffer(items: 100)"#;
@@ -40,7 +42,12 @@ fn a_whole_write_makes_earlier_ones_needless() {
 
 #[test]
 fn a_write_that_somebody_read_in_between_is_needed() {
-    let passes = [fill("early", "a"), with("copy.wgsl", "between", "b", "a"), fill("late", "a"), with("copy.wgsl", "end", "c", "b")];
+    let passes = [
+        fill("early", "a"),
+        with("copy.wgsl", "between", "b", "a"),
+        fill("late", "a"),
+        with("copy.wgsl", "end", "c", "b"),
+    ];
     assert_eq!(paths(&Test::of(AB, &passes.concat(), r#""c""#).plan()), ["early", "between", "end"]);
     assert_eq!(paths(&Test::of(AB, &passes.concat(), r#""c""#).root("a").plan()), ["early", "between", "late", "end"]);
 }
@@ -52,7 +59,8 @@ fn what_keeps_the_content_needs_the_earlier_writer() {
     assert_eq!(paths(&Test::of(AB, &passes, r#""a""#).plan()), ["early", "more"]);
 }
 
-const LAYERS: &str = r#""t": Texture(format: Rgba16Float, size: (8, 8), layers: 2), "o": Texture(format: Rgba16Float, size: (8, 8))"#;
+const LAYERS: &str =
+    r#""t": Texture(format: Rgba16Float, size: (8, 8), layers: 2), "o": Texture(format: Rgba16Float, size: (8, 8))"#;
 
 #[test]
 fn layers_are_told_apart() {
@@ -77,7 +85,8 @@ fn a_clear_of_the_whole_makes_layers_needless_and_a_clear_of_a_layer_does_not() 
 
 #[test]
 fn mips_are_told_apart() {
-    let resources = r#""t": Texture(format: Rgba16Float, size: (8, 8), mips: 3), "o": Texture(format: Rgba16Float, size: (8, 8))"#;
+    let resources =
+        r#""t": Texture(format: Rgba16Float, size: (8, 8), mips: 3), "o": Texture(format: Rgba16Float, size: (8, 8))"#;
     let passes = r#"
         Clear(name: "m0", of: "t", mip: 0), Clear(name: "m1", of: "t", mip: 1), Clear(name: "m2", of: "t", mip: 2),
         Fullscreen(name: "read", shader: "filter.wgsl", color: ["o"], bind: {"src": View(of: "t", mip: 1)}),"#;
@@ -89,7 +98,9 @@ fn mips_are_told_apart() {
 fn a_target_that_loads_or_blends_keeps_what_was_there() {
     let resources = r#""o": Texture(format: Rgba16Float, size: (8, 8))"#;
     let over = |how: &str| {
-        format!(r#"Clear(name: "before", of: "o"), Fullscreen(name: "paint", shader: "paint.wgsl", color: [(to: "o", {how})]),"#)
+        format!(
+            r#"Clear(name: "before", of: "o"), Fullscreen(name: "paint", shader: "paint.wgsl", color: [(to: "o", {how})]),"#
+        )
     };
     assert_eq!(paths(&Test::of(resources, &over(""), r#""o""#).plan()), ["paint"]);
     for kept in ["blend: Add", r#"write: "r""#] {
@@ -146,4 +157,30 @@ fn a_whole_write_in_a_step_does_not_make_earlier_ones_needless() {
         outputs: ["out"],
     )"#;
     assert_eq!(paths(&Test::new(graph).plan()), ["none", "step", "look", "show"]);
+}
+
+#[test]
+fn what_one_step_hands_to_the_next_is_needed() {
+    let graph = |order: &str| {
+        format!(
+            r#"Graph(
+            state: {{ "s": Buffer(items: 8) }},
+            resources: {{ "hand": Buffer(items: 8), "out": Buffer(items: 8) }},
+            passes: [
+                Clear(name: "none", of: "hand"),
+                Steps(rate: 60, passes: [ {order} ]),
+                Copy(name: "show", from: "s", to: "out"),
+            ],
+            outputs: ["out"],
+        )"#
+        )
+    };
+    let take = r#"Copy(name: "take", from: "hand", to: "s"),"#;
+    let give = r#"Compute(name: "give", shader: "fill.wgsl", each: Item("hand"), bind: {"dst": "hand"}),"#;
+    let plan = Test::new(&graph(&[take, give].concat())).plan();
+    assert_eq!(paths(&plan), ["none", "take", "give", "show"]);
+    // Written before it is read and again behind: that no step sees.
+    let again = give.replace("give", "again");
+    let plan = Test::new(&graph(&[give, take, &again].concat())).plan();
+    assert_eq!((paths(&plan), culled(&plan)), (vec!["none", "give", "take", "show"], vec!["again"]));
 }

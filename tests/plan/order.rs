@@ -90,7 +90,13 @@ fn after_a_loop_the_first_name_has_the_newest() {
 
 #[test]
 fn three_names_rotate() {
-    for (times, newest, now) in [(0, "a", ["a", "b", "c"]), (1, "c", ["c", "a", "b"]), (2, "b", ["b", "c", "a"]), (3, "a", ["a", "b", "c"]), (4, "c", ["c", "a", "b"])] {
+    for (times, newest, now) in [
+        (0, "a", ["a", "b", "c"]),
+        (1, "c", ["c", "a", "b"]),
+        (2, "b", ["b", "c", "a"]),
+        (3, "a", ["a", "b", "c"]),
+        (4, "c", ["c", "a", "b"]),
+    ] {
         let plan = rotating(&["a", "b", "c"], times);
         assert_eq!(bound_path(&plan, pass(&plan, "last"), "src"), newest, "{times} iterations");
         if times > 0 {
@@ -123,7 +129,9 @@ fn a_counter_is_a_number_in_each_iteration() {
         }
         // A `let` does not see a loop's counter everywhere; the expression in the loop does.
         Err(_) => {
-            let plan = Test::new(&graph.replace(r#"let: { "double": "2 * i" },"#, "").replace("double + 1", "2 * i + 1")).plan();
+            let plan =
+                Test::new(&graph.replace(r#"let: { "double": "2 * i" },"#, "").replace("double + 1", "2 * i + 1"))
+                    .plan();
             assert_eq!(shader(&plan, 0).constants, [("n".to_owned(), 5.0)]);
         }
     }
@@ -143,12 +151,12 @@ fn loops_in_loops_are_numbered_from_outside_in() {
 /// State that swaps `times` in a step.
 fn ringed(times: usize) -> Plan {
     let graph = r#"Graph(
-        state: { "old": Buffer(items: 8), "new": Buffer(items: 8) },
+        state: { "old": Buffer(items: 8), "next": Buffer(items: 8) },
         resources: { "out": Buffer(items: 8) },
         passes: [
             Steps(name: "sim", rate: 120, passes: [
-                Repeat(times: TIMES, swap: [("old", "new")], passes: [
-                    Compute(name: "step", shader: "step.wgsl", each: Item("new"), bind: {"src": "old", "dst": "new"}),
+                Repeat(times: TIMES, swap: [("old", "next")], passes: [
+                    Compute(name: "step", shader: "step.wgsl", each: Item("next"), bind: {"src": "old", "dst": "next"}),
                 ]),
             ]),
             Copy(name: "show", from: "old", to: "out"),
@@ -164,7 +172,7 @@ fn state_that_swaps_is_a_ring_that_turns_after_each_step() {
         let plan = ringed(times);
         assert_eq!(plan.rings.len(), 1);
         let ring = &plan.rings[0];
-        assert_eq!(ring.objects, [object(&plan, "old"), object(&plan, "new")]);
+        assert_eq!(ring.objects, [object(&plan, "old"), object(&plan, "next")]);
         assert_eq!((ring.turn, ring.steps), (times % 2, 0), "{times} swaps");
         assert_eq!(bound(&plan, pass(&plan, "step[0]"), "src"), ObjectRef::Ring { ring: 0, index: 0 });
         assert_eq!(bound(&plan, pass(&plan, "step[0]"), "dst"), ObjectRef::Ring { ring: 0, index: 1 });

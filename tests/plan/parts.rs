@@ -84,14 +84,14 @@ fn a_part_in_a_part_has_the_longer_path() {
     let outer = r#"Graph(
         inputs: { "source": Buffer },
         passes: [ Use(graph: "part.ron", name: "inner", params: {"n": 4}) ],
-        outputs: { "final": "inner.result" },
+        outputs: { "ending": "inner.result" },
     )"#;
     let graph = r#"Graph(
         resources: { "source": Buffer(items: 8), "out": Buffer(items: 8) },
         passes: [
             Compute(name: "fill", shader: "fill.wgsl", each: Item("source"), bind: {"dst": "source"}),
             Use(graph: "outer.ron", name: "outer"),
-            Compute(name: "end", shader: "copy.wgsl", each: Item("out"), bind: {"src": "outer.final", "dst": "out"}),
+            Compute(name: "end", shader: "copy.wgsl", each: Item("out"), bind: {"src": "outer.ending", "dst": "out"}),
         ],
         outputs: ["out"],
     )"#;

@@ -12,7 +12,7 @@ use crate::planning::{Test, paths};
 fn sample() -> Plan {
     let graph = r#"Graph(
         params: { "turns": Int(default: 4, min: 0, max: 9, unit: "times", about: "how often") },
-        state: { "old": Buffer(items: 16), "new": Buffer(items: 16) },
+        state: { "old": Buffer(items: 16), "next": Buffer(items: 16) },
         resources: {
             "list": Counted(capacity: 50), "seen": Buffer(items: 50), "idle": Buffer(items: 5),
             "a": Texture(format: Rgba16Float, size: "viewport", layers: 2), "b": Texture(format: Rgba16Float, size: "viewport"),
@@ -21,11 +21,10 @@ fn sample() -> Plan {
         passes: [
             Clear(name: "empty", of: "list"),
             Compute(name: "append", shader: "append.wgsl", each: Threads(100, 1, 1)),
-            Clear(name: "zero", of: "seen"),
             Compute(name: "use", shader: "consume.wgsl", each: Item("list"), bind: {"dst": "seen"}),
             Clear(name: "idle", of: "idle"),
-            Steps(name: "sim", rate: 60, passes: [ Repeat(times: 1, swap: [("old", "new")], passes: [
-                Compute(name: "step", shader: "step.wgsl", each: Item("new"), bind: {"src": "old", "dst": "new"}),
+            Steps(name: "sim", rate: 60, passes: [ Repeat(times: 1, swap: [("old", "next")], passes: [
+                Compute(name: "step", shader: "step.wgsl", each: Item("next"), bind: {"src": "old", "dst": "next"}),
             ]) ]),
             Copy(name: "show", from: "old", to: "idle_copy"),
             Clear(name: "near", of: "a", layer: 0), Clear(name: "far", of: "a", layer: 1),
@@ -38,10 +37,11 @@ fn sample() -> Plan {
         ],
         outputs: { "picture": "out", "seen": "seen", "sim": "idle_copy" },
     )"#;
-    let graph = graph.replace(r#""idle": Buffer(items: 5),"#, r#""idle": Buffer(items: 5), "idle_copy": Buffer(items: 16),"#);
+    let graph =
+        graph.replace(r#""idle": Buffer(items: 5),"#, r#""idle": Buffer(items: 5), "idle_copy": Buffer(items: 16),"#);
     let end = r#"Graph(
         inputs: { "picture": Texture },
-        resources: { "half": Texture(format: Rgba8Unorm, size: "viewport") },
+        resources: { "half": Texture(format: Rgba16Float, size: "viewport") },
         passes: [ Fullscreen(name: "mend", shader: "filter.wgsl", color: ["half"], bind: {"src": "picture"}) ],
         outputs: { "result": "half" },
     )"#;
@@ -111,7 +111,7 @@ fn svg_is_well_formed_and_shows_each_row_once() {
     assert_eq!(reader.remove(0), "svg");
     assert!(svg.contains("smooth[0..4] x5"), "{svg}");
     assert_eq!(svg.matches(">near<").count(), 1);
-    assert!(svg.contains("resources in one"), "shared memory has a row: {svg}");
+    assert!(svg.contains(">b | end.half  24.0 KiB<"), "shared memory has a row: {svg}");
 }
 
 /// The names of all elements, having checked that they nest.

@@ -47,8 +47,9 @@ fn plans_of_shipped_graphs() {
     std::env::set_current_dir(golden::root()).unwrap();
     let mut reports = Vec::new();
     for graph in graphs() {
-        let compared = plan(&graph)
-            .and_then(|plan| golden::compare(&format!("tests/plan/shipped/{}.txt", flat(&graph)).as_ref(), &print::text(&plan)));
+        let compared = plan(&graph).and_then(|plan| {
+            golden::compare(&format!("tests/plan/shipped/{}.txt", flat(&graph)).as_ref(), &print::text(&plan))
+        });
         reports.extend(compared.err().map(|report| format!("{}: {report}", graph.display())));
     }
     assert!(reports.is_empty(), "{}", reports.join("\n\n"));

@@ -2,8 +2,8 @@
 
 use std::collections::BTreeSet;
 
-use meniscus::plan::model::{Causes, InputInfo, Plan, Texture};
 use meniscus::format::TextureFormat;
+use meniscus::plan::model::{Causes, InputInfo, Plan, Texture};
 use wgpu_types::TextureUsages;
 
 use crate::planning::{Test, pass};
@@ -59,7 +59,10 @@ fn each_kind() -> Plan {
         usages: TextureUsages::empty(),
     };
     let test = Test::new(graph).input("camera", InputInfo::Camera).input("picture", InputInfo::Texture(picture));
-    ["eye", "clock", "wide", "sized", "chosen", "asked", "seen", "m2"].iter().fold(test, |test, root| test.root(root)).plan()
+    ["eye", "clock", "wide", "sized", "chosen", "asked", "seen", "m2"]
+        .iter()
+        .fold(test, |test, root| test.root(root))
+        .plan()
 }
 
 #[test]
@@ -94,7 +97,9 @@ fn abc(passes: &str, output: &str) -> Plan {
 }
 
 fn copy(name: &str, src: &str, dst: &str) -> String {
-    format!(r#"Compute(name: "{name}", shader: "copy.wgsl", each: Item("{dst}"), bind: {{"src": "{src}", "dst": "{dst}"}}),"#)
+    format!(
+        r#"Compute(name: "{name}", shader: "copy.wgsl", each: Item("{dst}"), bind: {{"src": "{src}", "dst": "{dst}"}}),"#
+    )
 }
 
 const FILL: &str = r#"Compute(name: "fill", shader: "fill.wgsl", each: Item("a"), bind: {"dst": "a"}),"#;
@@ -110,7 +115,8 @@ fn all_writers_of_a_resource_are_one_unit_and_readers_of_the_last_version_are_no
 
 #[test]
 fn a_reader_of_an_earlier_version_belongs_to_the_writers() {
-    let plan = abc(&[FILL, &copy("early", "a", "b"), ADD, &copy("late", "a", "c"), &copy("sum", "b", "d")].concat(), r#""d""#);
+    let plan =
+        abc(&[FILL, &copy("early", "a", "b"), ADD, &copy("late", "a", "c"), &copy("sum", "b", "d")].concat(), r#""d""#);
     // Nobody needs the later version here.
     assert_eq!(plan.passes.len(), 3);
     let resources = r#""a": Buffer(items: 64), "b": Buffer(items: 64), "c": Buffer(items: 64), "d": Buffer(items: 64)"#;
@@ -190,7 +196,8 @@ fn units_are_numbered_by_their_first_pass() {
 
 #[test]
 fn what_the_order_of_atomics_reaches_is_marked() {
-    let resources = r#""total": Buffer(items: 1), "a": Buffer(items: 64), "b": Buffer(items: 64), "c": Buffer(items: 64)"#;
+    let resources =
+        r#""total": Buffer(items: 1), "a": Buffer(items: 64), "b": Buffer(items: 64), "c": Buffer(items: 64)"#;
     let passes = [
         r#"Clear(name: "zero", of: "total"),
         Compute(name: "number", shader: "atomic.wgsl", each: Item("a"), bind: {"dst": "a"}),"#,
@@ -198,6 +205,7 @@ fn what_the_order_of_atomics_reaches_is_marked() {
         r#"Clear(name: "calm", of: "c"),"#,
     ];
     let plan = Test::of(resources, &passes.concat(), r#""b""#).root("c").plan();
-    let marked: Vec<bool> = ["zero", "number", "after", "calm"].map(|path| plan.passes[pass(&plan, path)].unordered).into();
+    let marked: Vec<bool> =
+        ["zero", "number", "after", "calm"].map(|path| plan.passes[pass(&plan, path)].unordered).into();
     assert_eq!(marked, [false, true, true, false]);
 }

@@ -140,7 +140,7 @@ impl Builder<'_> {
             add(format!("parts_{name}"), what, 6);
             add(format!("items_{name}"), What::Buffer { items: 100 }, 1);
         }
-        add("auto".into(), What::Texture { format: 0, size: 2, layers: 1, mips: 3, auto: true }, 1);
+        add("mipped".into(), What::Texture { format: 0, size: 2, layers: 1, mips: 3, auto: true }, 1);
         add("depth".into(), What::Depth { size: 1 }, 1);
         add("samples".into(), What::Samples { size: 1 }, 1);
         add("few".into(), What::Buffer { items: 1 }, 1);
@@ -177,7 +177,8 @@ impl Builder<'_> {
                 self.pass("Compute", "shader: \"arguments.wgsl\", each: Item(\"arguments\")");
             }
             (What::Texture { format, layers: 1, mips: 1, .. }, 0) => {
-                let fields = format!("shader: \"image{format}.wgsl\", each: Texel(\"{name}\"), bind: {{\"dst\": \"{name}\"}}");
+                let fields =
+                    format!("shader: \"image{format}.wgsl\", each: Texel(\"{name}\"), bind: {{\"dst\": \"{name}\"}}");
                 self.pass("Compute", &fields);
             }
             (What::Texture { layers: 1, auto, mips, .. }, 1) if auto || mips == 1 => {
@@ -189,7 +190,8 @@ impl Builder<'_> {
             (What::Texture { layers: 2, .. }, 2) => {
                 for mip in 0..3 {
                     for layer in 0..2 {
-                        let fields = format!("shader: \"paint.wgsl\", color: [(to: \"{name}\", mip: {mip}, layer: {layer})]");
+                        let fields =
+                            format!("shader: \"paint.wgsl\", color: [(to: \"{name}\", mip: {mip}, layer: {layer})]");
                         self.pass("Fullscreen", &fields);
                     }
                 }
@@ -214,7 +216,9 @@ impl Builder<'_> {
 
     /// Two different things of equal description, both written.
     fn pair(&mut self, fits: impl Fn(&What) -> bool) -> (String, String) {
-        let a = self.written(|what| fits(what) && matches!(what, What::Texture { auto: false, .. } | What::Buffer { items: 100 }));
+        let a = self.written(|what| {
+            fits(what) && matches!(what, What::Texture { auto: false, .. } | What::Buffer { items: 100 })
+        });
         let what = self.things[a].what;
         let b = (0..self.things.len()).find(|i| *i != a && self.things[*i].what == what).unwrap();
         if !self.things[b].is_written() {
@@ -252,7 +256,8 @@ impl Builder<'_> {
             4 => {
                 let (mip, layer) = (self.below(3), self.below(2));
                 let i = self.written(|what| matches!(what, What::Texture { layers: 2, .. }));
-                let fields = format!("of: \"{}\", mip: {mip}, layer: {layer}, value: (0.1, 0.2, 0.3, 1.0)", self.name(i));
+                let fields =
+                    format!("of: \"{}\", mip: {mip}, layer: {layer}, value: (0.1, 0.2, 0.3, 1.0)", self.name(i));
                 self.pass("Clear", &fields);
             }
             5 => self.filter(),
@@ -271,7 +276,8 @@ impl Builder<'_> {
     }
 
     fn copy_items(&mut self, src: &str, dst: &str) {
-        let fields = format!("shader: \"copy.wgsl\", each: Item(\"{dst}\"), bind: {{\"src\": \"{src}\", \"dst\": \"{dst}\"}}");
+        let fields =
+            format!("shader: \"copy.wgsl\", each: Item(\"{dst}\"), bind: {{\"src\": \"{src}\", \"dst\": \"{dst}\"}}");
         self.pass("Compute", &fields);
     }
 
@@ -302,7 +308,11 @@ impl Builder<'_> {
             number => number.parse().unwrap(),
         };
         let before = self.passes;
-        _ = writeln!(self.text, "      Repeat(times: {times}, index: \"i{}\", swap: [(\"{a}\", \"{b}\")], passes: [", self.names);
+        _ = writeln!(
+            self.text,
+            "      Repeat(times: {times}, index: \"i{}\", swap: [(\"{a}\", \"{b}\")], passes: [",
+            self.names
+        );
         if a.starts_with("items") {
             self.copy_items(&a, &b);
         } else {
@@ -342,7 +352,10 @@ impl Builder<'_> {
             0 => {
                 let dst = self.written(|what| matches!(what, What::Buffer { items: 100 }));
                 let dst = self.name(dst);
-                self.pass("Compute", &format!("shader: \"consume.wgsl\", each: Item(\"list\"), bind: {{\"dst\": \"{dst}\"}}"));
+                self.pass(
+                    "Compute",
+                    &format!("shader: \"consume.wgsl\", each: Item(\"list\"), bind: {{\"dst\": \"{dst}\"}}"),
+                );
             }
             1 => {
                 let target = self.written(|what| matches!(what, What::Texture { format: 0, layers: 1, mips: 1, .. }));
@@ -398,18 +411,26 @@ impl Builder<'_> {
 
     fn resolved(&mut self) {
         self.written(|what| matches!(what, What::Samples { .. }));
-        let fields = "shader: \"triangle.wgsl\", vertices: 3, samples: 4, color: [(to: \"samples\", resolve: \"resolved\")]";
+        let fields =
+            "shader: \"triangle.wgsl\", vertices: 3, samples: 4, color: [(to: \"samples\", resolve: \"resolved\")]";
         self.pass("Draw", fields);
         let dst = self.written(|what| matches!(what, What::Texture { layers: 1, mips: 1, .. }));
         let dst = self.name(dst);
-        self.pass("Fullscreen", &format!("shader: \"filter.wgsl\", color: [\"{dst}\"], bind: {{\"src\": \"resolved\"}}"));
+        self.pass(
+            "Fullscreen",
+            &format!("shader: \"filter.wgsl\", color: [\"{dst}\"], bind: {{\"src\": \"resolved\"}}"),
+        );
     }
 
     fn layered(&mut self) {
         let src = self.written(|what| matches!(what, What::Texture { layers: 2, .. }));
         let dst = self.written(|what| matches!(what, What::Texture { layers: 1, mips: 1, .. }));
         let (src, dst) = (self.name(src), self.name(dst));
-        let of = if self.below(2) == 0 { format!("\"{src}\"") } else { format!("View(of: \"{src}\", mip: {})", self.below(3)) };
+        let of = if self.below(2) == 0 {
+            format!("\"{src}\"")
+        } else {
+            format!("View(of: \"{src}\", mip: {})", self.below(3))
+        };
         self.pass("Fullscreen", &format!("shader: \"layers.wgsl\", color: [\"{dst}\"], bind: {{\"src\": {of}}}"));
     }
 
@@ -418,8 +439,14 @@ impl Builder<'_> {
         let swaps = 1 + self.below(3);
         let rate = ["60", "PerFrame"][self.below(2) as usize];
         let before = self.passes;
-        _ = writeln!(self.text, "      Steps(rate: {rate}, passes: [ Repeat(times: {swaps}, swap: [(\"old\", \"new\")], passes: [");
-        self.pass("Compute", "shader: \"copy.wgsl\", each: Item(\"new\"), bind: {\"src\": \"old\", \"dst\": \"new\"}");
+        _ = writeln!(
+            self.text,
+            "      Steps(rate: {rate}, passes: [ Repeat(times: {swaps}, swap: [(\"old\", \"next\")], passes: ["
+        );
+        self.pass(
+            "Compute",
+            "shader: \"copy.wgsl\", each: Item(\"next\"), bind: {\"src\": \"old\", \"dst\": \"next\"}",
+        );
         self.text.push_str("      ]) ]),\n");
         self.passes = before + swaps as usize;
         let dst = self.written(|what| matches!(what, What::Buffer { items: 100 }));
@@ -440,7 +467,7 @@ impl Builder<'_> {
         let resources: String = self.things.iter().map(declaration).collect();
         let graph = format!(
             "Graph(\n    params: {{ \"times\": Int(default: 1, min: 0, max: 5), \"fancy\": Bool(default: false) }},\n    \
-             state: {{ \"old\": Buffer(items: 16), \"new\": Buffer(items: 16) }},\n    resources: {{\n{resources}        \
+             state: {{ \"old\": Buffer(items: 16), \"next\": Buffer(items: 16) }},\n    resources: {{\n{resources}        \
              \"resolved\": Texture(format: Rgba8Unorm, size: (16, 16)),\n    }},\n    passes: [\n{}    ],\n    outputs: [{}],\n)\n",
             self.text,
             outputs.join(", ")

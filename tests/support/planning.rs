@@ -5,10 +5,8 @@
 use meniscus::diagnostic::{Diagnostics, Sources, Style, render_all};
 use meniscus::files::MemoryFiles;
 use meniscus::graph::value::Value;
-use meniscus::plan::model::{
-    Binding, Bound, InputInfo, ObjectId, ObjectRef, PassKind, Plan, Request, ShaderUse, View,
-};
 use meniscus::plan::instantiate;
+use meniscus::plan::model::{Binding, Bound, InputInfo, ObjectId, ObjectRef, PassKind, Plan, Request, ShaderUse, View};
 use meniscus::program;
 use wgpu_types::{Features, Limits};
 
@@ -179,7 +177,9 @@ pub fn bound(plan: &Plan, at: usize, name: &str) -> ObjectRef {
     let binding: &Binding = shader(plan, at).bindings.iter().find(|b| b.name == name).unwrap();
     match &binding.bound {
         Bound::UniformBuffer { buffer } | Bound::Storage { buffer, .. } => *buffer,
-        Bound::Texture { view: View { object, .. }, .. } | Bound::StorageTexture { view: View { object, .. }, .. } => *object,
+        Bound::Texture { view: View { object, .. }, .. } | Bound::StorageTexture { view: View { object, .. }, .. } => {
+            *object
+        }
         other => panic!("{name} is {other:?}"),
     }
 }

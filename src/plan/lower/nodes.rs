@@ -262,21 +262,23 @@ impl Lowering<'_> {
 
     /// How far each ring turned in a step, and whether anything else ended up swapped.
     fn close_steps(&mut self, s: ScopeId, index: usize, before: &[ObjectRef], word: Span) -> Result<()> {
+        // A variable that was first asked for inside had the object that was made with it.
+        let at_start = |v: VarId| before.get(v).copied().unwrap_or(ObjectRef::Fixed(v));
         for v in 0..self.vars.len() {
             let now = self.vars[v].now;
             match now {
                 ObjectRef::Ring { ring, index: at } if self.rings[ring].steps == index => {
                     let objects = &self.rings[ring].objects;
                     let n = objects.len();
-                    let home = before.get(v).map_or(at, |b| match b {
-                        ObjectRef::Fixed(id) => objects.iter().position(|o| o == id).unwrap_or(at),
-                        ObjectRef::Ring { index, .. } => *index,
-                    });
+                    let home = match at_start(v) {
+                        ObjectRef::Fixed(id) => objects.iter().position(|o| *o == id).unwrap_or(at),
+                        ObjectRef::Ring { index, .. } => index,
+                    };
                     // Name `home` now has what `at` had; the next step must start from there.
                     self.rings[ring].turn = (at + n - home) % n;
                     self.vars[v].now = ObjectRef::Ring { ring, index: home };
                 }
-                ObjectRef::Fixed(id) if before.get(v).is_some_and(|b| *b != now) => {
+                ObjectRef::Fixed(id) if at_start(v) != now => {
                     let name = self.objects[id].object.path.clone();
                     let message = format!("`{name}` swaps inside `Steps` and is no state");
                     let diagnostic = fault(Code::STATE, message, word, "an odd number of swaps in a step")

@@ -60,7 +60,7 @@ pub fn name(plan: &Plan, object: ObjectRef) -> String {
 /// What a pass does, without what it reads and writes.
 pub fn pass(pass: &Pass) -> String {
     match &pass.kind {
-        PassKind::Compute { dispatch: Dispatch::Groups([x, y, z]), .. } => format!("compute {x} x {y} x {z}"),
+        PassKind::Compute { dispatch: Dispatch::Groups([x, y, z]), .. } => format!("compute {x} x {y} x {z} groups"),
         PassKind::Compute { dispatch: Dispatch::Indirect { slot }, .. } => format!("compute indirect #{slot}"),
         PassKind::Draw(draw) => draw_line(draw),
         PassKind::Clear { value, .. } => match value {
@@ -81,13 +81,13 @@ pub fn pass(pass: &Pass) -> String {
 fn draw_line(draw: &Draw) -> String {
     let geometry = match &draw.geometry {
         Geometry::Fullscreen => "fullscreen".to_owned(),
-        Geometry::Direct { vertices, instances } => format!("draw {vertices} x {instances}"),
-        Geometry::Indexed { count, instances, .. } => format!("draw indexed {count} x {instances}"),
+        Geometry::Direct { vertices, instances } => format!("draw {vertices} vertices, {instances} instances"),
+        Geometry::Indexed { count, instances, .. } => format!("draw {count} indices, {instances} instances"),
         Geometry::Indirect { slot, .. } => format!("draw indirect #{slot}"),
     };
     let [w, h] = draw.extent;
     let samples = if draw.samples > 1 { format!(", {} samples", draw.samples) } else { String::new() };
-    format!("{geometry} to {w} x {h}{samples}")
+    format!("{geometry}, to {w} x {h}{samples}")
 }
 
 /// `body.z[mip 0, layer 1]`, with only what is not whole in brackets.

@@ -43,7 +43,10 @@ struct Part {
 
 impl Part {
     fn at(&mut self, scope: &str) -> &mut Part {
-        scope.split('.').filter(|name| !name.is_empty()).fold(self, |part, name| part.parts.entry(name.to_owned()).or_default())
+        scope
+            .split('.')
+            .filter(|name| !name.is_empty())
+            .fold(self, |part, name| part.parts.entry(name.to_owned()).or_default())
     }
 
     fn write(&self, path: &str, depth: usize, out: &mut String) {

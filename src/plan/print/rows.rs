@@ -56,7 +56,8 @@ fn repeated(plan: &Plan, shapes: &[String], at: usize) -> (usize, usize) {
     let left = plan.passes.len() - at;
     for body in 1..=LONGEST_BODY.min(left / 2) {
         let alike = |from: usize| {
-            (0..body).all(|k| shapes[from + k] == shapes[at + k] && same(plan, &plan.passes[at + k], &plan.passes[from + k]))
+            (0..body)
+                .all(|k| shapes[from + k] == shapes[at + k] && same(plan, &plan.passes[at + k], &plan.passes[from + k]))
         };
         // A loop, and not merely two passes that look alike.
         let counts = (0..body).any(|k| plan.passes[at + k].path.ends_with(']'));

@@ -13,6 +13,10 @@ use crate::plan::model::{ObjectId, Origin, Plan};
 const COLUMN: usize = 18;
 const ROW: usize = 20;
 const MARGIN: usize = 16;
+/// Characters of the names of resources that share a row.
+const LONGEST_LABEL: usize = 48;
+/// Pixels that the legend takes.
+const LEGEND: usize = 720;
 /// About the width of a character at the size that the text has.
 const LETTER: f64 = 6.1;
 
@@ -38,7 +42,10 @@ pub fn svg(plan: &Plan) -> String {
     let layout = Layout::new(plan);
     let mut out = String::new();
     let (w, h) = (layout.width, layout.height);
-    _ = writeln!(out, r#"<svg xmlns="http://www.w3.org/2000/svg" width="{w}" height="{h}" viewBox="0 0 {w} {h}" font-family="sans-serif" font-size="11">"#);
+    _ = writeln!(
+        out,
+        r#"<svg xmlns="http://www.w3.org/2000/svg" width="{w}" height="{h}" viewBox="0 0 {w} {h}" font-family="sans-serif" font-size="11">"#
+    );
     _ = writeln!(out, r##"<rect width="{w}" height="{h}" fill="#ffffff"/>"##);
     title(plan, &mut out);
     columns(plan, &layout, &mut out);
@@ -64,7 +71,9 @@ impl Layout {
         // Names of passes lean at 60 degrees.
         let top = (names * 0.87) as usize + 4 * MARGIN;
         let lean = (names * 0.5) as usize;
-        let width = (left + rows.len() * COLUMN + lean.max(120) + MARGIN).max(640);
+        let width = (left + rows.len() * COLUMN + lean + MARGIN)
+            .max(longest(&mut [summary(plan).len()].into_iter()) as usize + 2 * MARGIN)
+            .max(LEGEND);
         let height = top + lanes.len() * ROW + 4 * MARGIN;
         Self { rows, column, lanes, left, top, width, height }
     }
@@ -94,24 +103,44 @@ fn label(plan: &Plan, lane: &Lane) -> String {
     let size = describe::bytes(lane.bytes);
     match lane.objects.as_slice() {
         [one] => format!("{}  {size}", plan.objects[*one].path),
-        several => format!("{} resources in one  {size}", several.len()),
+        several => {
+            let names: Vec<&str> = several.iter().map(|id| plan.objects[*id].path.as_str()).collect();
+            format!("{}  {size}", shortened(&names))
+        }
     }
+}
+
+/// As many names as there is room for, and how many more.
+fn shortened(names: &[&str]) -> String {
+    let mut text = names.first().copied().unwrap_or_default().to_owned();
+    for (i, name) in names.iter().enumerate().skip(1) {
+        if text.len() + name.len() > LONGEST_LABEL {
+            return format!("{text} and {} more", names.len() - i);
+        }
+        text.push_str(" | ");
+        text.push_str(name);
+    }
+    text
 }
 
 fn title(plan: &Plan, out: &mut String) {
     let [w, h] = plan.viewport;
     let name = escaped(&plan.graph.display().to_string());
     _ = writeln!(out, r#"<text x="{MARGIN}" y="24" font-size="15" font-weight="bold">{name} at {w} x {h}</text>"#);
+    let line = summary(plan);
+    _ = writeln!(out, r##"<text x="{MARGIN}" y="42" fill="#556">{line}</text>"##);
+}
+
+fn summary(plan: &Plan) -> String {
     let memory = &plan.memory;
-    let line = format!(
-        "{} passes in {} units; {} of memory where skipping keeps what it needs, {} at the smallest, {} without sharing",
+    format!(
+        "{} passes in {} units; memory: {} keeping what skipping needs, {} at the smallest, {} without sharing",
         plan.passes.len(),
         plan.units.len(),
         describe::bytes(total(&memory.keep)),
         describe::bytes(total(&memory.smallest)),
         describe::bytes(memory.unshared),
-    );
-    _ = writeln!(out, r##"<text x="{MARGIN}" y="42" fill="#556">{line}</text>"##);
+    )
 }
 
 /// Columns shaded by unit, with the passes' names above and the units' below.
@@ -157,8 +186,10 @@ fn lane(plan: &Plan, layout: &Layout, l: usize, lane: &Lane, out: &mut String) {
 fn bar(plan: &Plan, layout: &Layout, y: usize, id: ObjectId, shares: bool, out: &mut String) {
     let object = &plan.objects[id];
     let Some((first, last)) = object.lifetime else { return };
-    // A loop's column stands for all its iterations.
-    let (from, to) = (layout.column[first], layout.column[last].max(layout.column[first]));
+    // A loop's column stands for all its iterations, so a use may lie in front of the first.
+    let uses = uses(plan, layout, id);
+    let from = uses.keys().next().copied().unwrap_or(layout.column[first]);
+    let to = uses.keys().next_back().copied().unwrap_or(from).max(layout.column[last]);
     let is_output = plan.outputs.iter().any(|output| rows::id(plan, output.object) == id);
     let fill = match &object.origin {
         _ if is_output => "#f2b134",
@@ -175,17 +206,17 @@ fn bar(plan: &Plan, layout: &Layout, y: usize, id: ObjectId, shares: bool, out: 
         y + 3,
         ROW - 6
     );
-    for (column, (read, write)) in uses(plan, layout, id) {
+    for (column, (read, write)) in uses {
         let (cx, cy) = (layout.x(column) + COLUMN / 2, y + ROW / 2);
-        let (inner, radius) = if write { ("#1b2a38", 4) } else { ("none", 3) };
-        let ring = if read && write { r##" stroke="#ffffff" stroke-width="1.5""## } else { r##" stroke="#1b2a38""## };
-        _ = writeln!(out, r#"<circle cx="{cx}" cy="{cy}" r="{radius}" fill="{inner}"{ring}/>"#);
+        mark(cx, cy, read, write, out);
     }
-    if shares {
-        let name = escaped(&object.path);
-        let (tx, ty) = (layout.x(to + 1) + 2, y + 14);
-        _ = writeln!(out, r##"<text x="{tx}" y="{ty}" font-size="9" fill="#2c5d6b">{name}</text>"##);
-    }
+}
+
+/// A ring for reading, a dot for writing, a dot in a ring for both.
+fn mark(cx: usize, cy: usize, read: bool, write: bool, out: &mut String) {
+    let (inner, radius) = if write { ("#1b2a38", 4) } else { ("none", 3) };
+    let ring = if read && write { r##"stroke="#ffffff" stroke-width="1.5""## } else { r##"stroke="#1b2a38""## };
+    _ = writeln!(out, r#"<circle cx="{cx}" cy="{cy}" r="{radius}" fill="{inner}" {ring}/>"#);
 }
 
 /// In which columns an object is read and written.
@@ -214,10 +245,11 @@ fn legend(layout: &Layout, out: &mut String) {
         _ = writeln!(out, r#"<text x="{}" y="{y}">{text}</text>"#, x + 28);
         x += 28 + (text.len() as f64 * LETTER) as usize + 24;
     }
-    for (inner, radius, text) in [("#1b2a38", 4, "written"), ("none", 3, "read")] {
-        _ = writeln!(out, r##"<circle cx="{}" cy="{}" r="{radius}" fill="{inner}" stroke="#1b2a38"/>"##, x + 6, y - 4);
-        _ = writeln!(out, r#"<text x="{}" y="{y}">{text}</text>"#, x + 16);
-        x += 16 + (text.len() as f64 * LETTER) as usize + 20;
+    for (read, write, text) in [(false, true, "written"), (true, false, "read"), (true, true, "both")] {
+        _ = writeln!(out, r##"<rect x="{x}" y="{}" width="14" height="14" rx="4" fill="#a9bdd3"/>"##, y - 11);
+        mark(x + 7, y - 4, read, write, out);
+        _ = writeln!(out, r#"<text x="{}" y="{y}">{text}</text>"#, x + 19);
+        x += 19 + (text.len() as f64 * LETTER) as usize + 16;
     }
 }
 

@@ -3,8 +3,8 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 
-use super::rows::{self, Row, rows, shared};
 use super::describe;
+use super::rows::{self, Row, rows, shared};
 use crate::graph::value::Value;
 use crate::plan::memory::total;
 use crate::plan::model::{Causes, ObjectId, Origin, Plan};
@@ -31,7 +31,11 @@ pub fn text(plan: &Plan) -> String {
 
 fn passes(plan: &Plan, out: &mut String) {
     let culled = if plan.culled.is_empty() { String::new() } else { format!(", {} culled", plan.culled.len()) };
-    _ = writeln!(out, "passes: {} in program order{culled}; below each what it reads -> what it writes", plan.passes.len());
+    _ = writeln!(
+        out,
+        "passes: {} in program order{culled}; below each what it reads -> what it writes",
+        plan.passes.len()
+    );
     let rows = rows(plan);
     let width = rows.iter().map(|row| rows::path(plan, row).len()).max().unwrap_or(0).min(WIDEST);
     for row in &rows {
@@ -67,19 +71,63 @@ fn pass(plan: &Plan, row: &Row, width: usize, out: &mut String) {
 
 fn units(plan: &Plan, out: &mut String) {
     _ = writeln!(out, "units: {}; the passes of a unit run together, when one of its causes changes", plan.units.len());
-    let lines: Vec<(String, String)> = plan
-        .units
-        .iter()
-        .map(|unit| {
-            let what = if unit.passes.len() == 1 { "pass" } else { "passes" };
-            (format!("{what} {}", ranges(&unit.passes)), causes(&unit.causes))
-        })
-        .collect();
+    // Units whose causes no earlier one has, to say the rest by.
+    let mut known: Vec<usize> = Vec::new();
+    let mut lines: Vec<(String, String)> = Vec::new();
+    for (u, unit) in plan.units.iter().enumerate() {
+        let what = if unit.passes.len() == 1 { "pass" } else { "passes" };
+        let (bases, rest) = bases(plan, &known, &unit.causes);
+        let mut parts: Vec<String> = Vec::new();
+        if !bases.is_empty() {
+            let names: Vec<String> = bases.iter().map(|k| format!("u{k}")).collect();
+            parts.push(format!("as {}", names.join(" and ")));
+        }
+        if bases.is_empty() || !rest.is_empty() {
+            parts.push(causes(&rest));
+        }
+        let why = parts.join("; ");
+        if bases.len() != 1 || !rest.is_empty() {
+            known.push(u);
+        }
+        lines.push((format!("{what} {}", ranges(&unit.passes)), why));
+    }
     let width = lines.iter().map(|(passes, _)| passes.len()).max().unwrap_or(0).min(WIDEST);
     for (u, (passes, causes)) in lines.iter().enumerate() {
         _ = writeln!(out, "  {:<5} {passes:width$}  {causes}", format!("u{u}"));
     }
     out.push('\n');
+}
+
+/// Up to two of the known units whose causes are among these, and those that they leave.
+fn bases(plan: &Plan, known: &[usize], all: &Causes) -> (Vec<usize>, Causes) {
+    let (mut chosen, mut rest) = (Vec::new(), all.clone());
+    while chosen.len() < 2 {
+        let gain = |k: usize| rest.len() - without(&rest, &plan.units[k].causes).len();
+        let inside = known.iter().copied().filter(|k| within(&plan.units[*k].causes, all));
+        // The first of equals.
+        let best = inside.map(|k| (gain(k), k)).max_by_key(|(gain, k)| (*gain, std::cmp::Reverse(*k)));
+        let Some((gain, k)) = best.filter(|(gain, _)| *gain > 2 || (*gain > 0 && *gain == rest.len())) else { break };
+        debug_assert!(gain > 0, "a base takes something away");
+        rest = without(&rest, &plan.units[k].causes);
+        chosen.push(k);
+    }
+    (chosen, rest)
+}
+
+fn within(a: &Causes, b: &Causes) -> bool {
+    a.inputs.is_subset(&b.inputs)
+        && a.live.is_subset(&b.live)
+        && a.params.is_subset(&b.params)
+        && (b.viewport || !a.viewport)
+}
+
+fn without(all: &Causes, less: &Causes) -> Causes {
+    Causes {
+        inputs: &all.inputs - &less.inputs,
+        live: &all.live - &less.live,
+        params: &all.params - &less.params,
+        viewport: all.viewport && !less.viewport,
+    }
 }
 
 /// `3, 5 to 9`.
@@ -142,6 +190,7 @@ fn steps(plan: &Plan, out: &mut String) {
         let rate = steps.rate.map_or("once a frame".to_owned(), |rate| format!("{rate} Hz"));
         let passes = match steps.passes.len() {
             0 => "no passes".to_owned(),
+            1 => format!("pass {}", steps.passes.start),
             _ => format!("passes {}", ranges(&steps.passes.clone().collect::<Vec<_>>())),
         };
         _ = writeln!(out, "  {}  {rate}, {passes}", steps.path);
@@ -220,7 +269,11 @@ fn memory(plan: &Plan, out: &mut String) {
             _ = writeln!(out, "  {:>10}    {label}{}", describe::bytes(slot.bytes), names.join(", "));
         }
     }
-    _ = writeln!(out, "  {:>10}  in the largest live set: no plan can hold less\n", describe::bytes(memory.lower_bound));
+    _ = writeln!(
+        out,
+        "  {:>10}  in the largest live set: no plan can hold less\n",
+        describe::bytes(memory.lower_bound)
+    );
 }
 
 fn needs(plan: &Plan, out: &mut String) {
