@@ -51,15 +51,14 @@ impl<'a> Group<'a> {
             let depth = handles(plan, pool, d.view.object);
             meet(&depth, &touches.read) || meet(&depth, &self.touches.read)
         });
-        let fits = self.steps == pass.steps
-            && same_targets(self.last, draw)
-            && !(writes_depth && samples_depth)
-            && !meet(&self.touches.written, &touches.read)
-            && !meet(&self.touches.written, &touches.written)
-            && !meet(&self.touches.read, &touches.written)
+        let conflicts = (writes_depth && samples_depth)
+            || meet(&self.touches.written, &touches.read)
+            || meet(&self.touches.written, &touches.written)
+            || meet(&self.touches.read, &touches.written)
             // What is resolved is there only after the render pass.
-            && !meet(&resolved(plan, pool, self.last), &touches.read)
-            && !meet(&resolved(plan, pool, draw), &self.touches.read);
+            || meet(&resolved(plan, pool, self.last), &touches.read)
+            || meet(&resolved(plan, pool, draw), &self.touches.read);
+        let fits = self.steps == pass.steps && same_targets(self.last, draw) && !conflicts;
         if fits {
             self.last = draw;
             self.writes_depth = writes_depth;
