@@ -50,8 +50,7 @@ fn seen_through(start: vec3f, view: vec3f, pixel: vec2f) -> vec3f {
     var direction = into.direction;
     var share = (1.0 - into.reflectance) * transmitted(params.absorption, back.t);
     if params.refractions > 1u {
-        // Liquid that rests on something wets it: no air between, no second surface.
-        let wet = smoothstep(params.contact_m, 0.5 * params.contact_m, dry_distance(p, back.pixel));
+        let wet = wetting(p, back.pixel, params.contact_m);
         add_ray(&rays, p, direction, share * wet);
         share *= 1.0 - wet;
         let inside = facing(layer_normal(smooth_normal, linear_clamp, 1, back.pixel), direction);

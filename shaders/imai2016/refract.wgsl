@@ -71,8 +71,8 @@ fn seen_through(start: vec3f, view: vec3f, first: Crossing) -> vec3f {
         if entered == params.refractions {
             break;
         }
-        // Liquid that rests on something wets it: no air between, no second surface.
-        let wet = smoothstep(params.contact_m, 0.5 * params.contact_m, dry_distance(p, at.pixel));
+        // Splashes fly or bounce: only the body wets what it lies on.
+        let wet = wetting(p, at.pixel, select(0.0, params.contact_m, in_body));
         add_ray(&rays, p, direction, share * wet);
         share *= 1.0 - wet;
         if wet == 1.0 {

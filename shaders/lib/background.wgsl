@@ -45,6 +45,15 @@ fn dry_distance(p: vec3f, pixel: vec2f) -> f32 {
     return dot(crossed * inverseSqrt(max(dot(crossed, crossed), 1.0e-30)), p - here);
 }
 
+/// 1 where a point lies on the dry scene behind its pixel, 0 from `contact` on: liquid that rests on something wets it,
+/// so that no air and no second surface lies between. Never where `contact` is 0.
+fn wetting(p: vec3f, pixel: vec2f, contact: f32) -> f32 {
+    if contact <= 0.0 {
+        return 0.0;
+    }
+    return 1.0 - smoothstep(0.5 * contact, contact, dry_distance(p, pixel));
+}
+
 /// Marches in growing steps until the ray is behind the dry scene, then halves the last step. All in eye space.
 fn background(p: vec3f, direction: vec3f, reach: f32, steps: u32) -> vec3f {
     var ends = vec2f(0.0);

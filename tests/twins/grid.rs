@@ -5,8 +5,8 @@ use std::collections::HashMap;
 /// Numbers of cells along x, y, z, as `graphs/parts/neighbour_grid.ron` derives them.
 pub fn sizes(count: usize, min: [f32; 3], max: [f32; 3], cell_size: f64) -> [u32; 3] {
     let wanted = |k: usize| ((f64::from(max[k]) - f64::from(min[k])) / cell_size).min(100_000.0).floor() + 3.0;
-    let most = (8.0 * count as f64).min(16_777_216.0).max(65_536.0);
-    let columns = wanted(0).min(512.0).max(4.0);
+    let most = (8.0 * count as f64).clamp(65_536.0, 16_777_216.0);
+    let columns = wanted(0).clamp(4.0, 512.0);
     let rows = wanted(1).min((most / (columns * 16.0)).floor()).max(4.0);
     let slices = wanted(2).min((most / (columns * rows)).floor()).max(4.0);
     [columns as u32, rows as u32, slices as u32]

@@ -104,11 +104,10 @@ pub fn eigen(matrix: [[f64; 3]; 3]) -> ([f64; 3], [[f64; 3]; 3]) {
         for row in &mut m {
             (row[p], row[q]) = (cosine * row[p] - sine * row[q], sine * row[p] + cosine * row[q]);
         }
-        for k in 0..3 {
-            (m[p][k], m[q][k]) = (cosine * m[p][k] - sine * m[q][k], sine * m[p][k] + cosine * m[q][k]);
-        }
-        for k in 0..3 {
-            (v[p][k], v[q][k]) = (cosine * v[p][k] - sine * v[q][k], sine * v[p][k] + cosine * v[q][k]);
+        for rows in [&mut m, &mut v] {
+            let (a, b) = (rows[p], rows[q]);
+            rows[p] = [0, 1, 2].map(|k| cosine * a[k] - sine * b[k]);
+            rows[q] = [0, 1, 2].map(|k| sine * a[k] + cosine * b[k]);
         }
     }
     ([m[0][0], m[1][1], m[2][2]], v)
