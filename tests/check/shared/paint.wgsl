@@ -1,0 +1,7 @@
+// Writes a storage texture.
+var canvas: texture_storage_2d<rgba16float, write>;
+
+@compute @workgroup_size(8, 8)
+fn main(@builtin(global_invocation_id) id: vec3u) {
+    textureStore(canvas, vec2i(id.xy), vec4f(1.0));
+}
