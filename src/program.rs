@@ -9,6 +9,7 @@ use std::sync::Arc;
 
 use crate::diagnostic::{Code, Diagnostic, Diagnostics, FileId, Sources, Span};
 use crate::files::{self, Files, Kind, NotFound};
+use crate::graph::expr::Expr;
 use crate::graph::model::{Graph, Name, Node, NodeKind};
 use crate::shader;
 use crate::shader::reflect::Module;
@@ -42,6 +43,32 @@ impl Program {
     /// All shader modules by file.
     pub fn shaders(&self) -> impl Iterator<Item = &Arc<Module>> {
         self.shaders.values()
+    }
+
+    /// Whether `path` is the instance path of a parameter that a user can set, in any branch; if
+    /// not, the paths that it could have been.
+    pub fn has_param(&self, path: &str) -> Result<(), Vec<String>> {
+        let (mut graph, mut given): (&Graph, &[(Name, Expr)]) = (&self.root, &[]);
+        let parts: Vec<&str> = path.split('.').collect();
+        let (name, uses) = parts.split_last().unwrap_or((&path, &[]));
+        let mut prefix = String::new();
+        for part in uses {
+            let mut next = None;
+            each_node(&graph.passes, &mut |node| match &node.kind {
+                NodeKind::Use(used) if used.name.value == *part => next = Some(used),
+                _ => {}
+            });
+            let Some((used, inner)) = next.and_then(|used| Some((used, self.part(graph, &used.graph.value)?))) else {
+                break;
+            };
+            (graph, given) = (inner, &used.params);
+            prefix = format!("{prefix}{part}.");
+        }
+        let is_given = |name: &Name| given.iter().any(|(other, _)| other.value == name.value);
+        let known = graph.params.iter().filter(|p| !is_given(&p.name)).map(|p| format!("{prefix}{}", p.name.value));
+        let known: Vec<String> = known.collect();
+        let is_whole = prefix.len() + name.len() == path.len();
+        if is_whole && known.iter().any(|known| known == path) { Ok(()) } else { Err(known) }
     }
 
     /// Each name as written and the file that was taken for it.

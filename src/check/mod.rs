@@ -3,39 +3,33 @@
 //!
 //! What a warning says ("unused") must hold in every variant; an error in any one is an error.
 
+mod passes;
 mod variants;
 
 use crate::diagnostic::{Code, Diagnostic, Diagnostics, Severity};
 use crate::plan;
 use crate::plan::model::{Plan, Request};
+use crate::plan::needs::feature_names;
 use crate::program::Program;
 
 /// Everything that is wrong with a program, and what is odd about it in every variant.
 pub fn check(program: &Program) -> Diagnostics {
-    let mut found = Diagnostics::new();
-    let mut odd: Option<Vec<Diagnostic>> = None;
+    let mut found = passes::names(program);
     let base = variants::base(program);
-    let params = match plan::instantiate_stand_in(program, &base) {
-        Ok(plan) => {
-            odd = Some(oddities(&plan));
-            plan.params
-        }
+    let plan = match plan::instantiate_stand_in(program, &base) {
+        Ok(plan) => plan,
+        // The variants would only say the same again.
         Err(diagnostics) => {
             found.extend(diagnostics);
-            Vec::new()
+            return found;
         }
     };
-    // With errors at the defaults the variants would only say the same again.
-    if found.has_errors() {
-        return found;
-    }
-    for (said, request) in variants::others(program, &base, &params) {
+    let mut odd = oddities(&plan);
+    for (said, request) in variants::others(program, &base, &plan) {
         match plan::instantiate_stand_in(program, &request) {
             Ok(plan) => {
                 let now = oddities(&plan);
-                if let Some(odd) = &mut odd {
-                    odd.retain(|d| now.contains(d));
-                }
+                odd.retain(|d| now.iter().any(|n| n.id == d.id && n.labels == d.labels));
             }
             Err(diagnostics) => {
                 for diagnostic in diagnostics.0 {
@@ -44,10 +38,23 @@ pub fn check(program: &Program) -> Diagnostics {
             }
         }
     }
-    for diagnostic in odd.into_iter().flatten() {
+    for diagnostic in odd.into_iter().chain(beyond_defaults(program, &plan)) {
         found.push(diagnostic);
     }
     found
+}
+
+/// What the graph needs that not every device has.
+fn beyond_defaults(program: &Program, plan: &Plan) -> Option<Diagnostic> {
+    let features = feature_names(plan.needs.features).into_iter().map(|name| format!("the feature `{name}`"));
+    let limits = plan.needs.limits.iter().map(|(name, needed, default)| format!("`{name}` of {needed} (of {default})"));
+    let all: Vec<String> = features.chain(limits).collect();
+    if all.is_empty() {
+        return None;
+    }
+    let message = format!("the graph needs more than every WebGPU device has: {}", all.join(", "));
+    let diagnostic = Diagnostic::note(Code::NEEDS, message).at(program.root.span, "this graph");
+    Some(diagnostic.hint("`If(test: \"device(...)\", then: [...], else: [...])` offers another way where it is not there"))
 }
 
 /// The scene that programs are checked with: it has everything that the graph asks for, also what
@@ -66,9 +73,12 @@ fn oddities(plan: &Plan) -> Vec<Diagnostic> {
         }) {
             continue;
         }
-        let message = "no output needs this pass";
-        let diagnostic = Diagnostic::warning(Code::CULLED, message).at(culled.span, "left out of every plan");
-        if !all.contains(&diagnostic) {
+        let message = format!("the pass `{}` is left out: {}", culled.path, culled.why);
+        let diagnostic = Diagnostic::warning(Code::CULLED, message)
+            .at(culled.span, "never runs")
+            .hint("put what it writes among the `outputs`, or let a pass read it");
+        // A loop's pass is one pass, however often it goes round.
+        if !all.iter().any(|known| known.labels == diagnostic.labels) {
             all.push(diagnostic);
         }
     }

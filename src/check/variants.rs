@@ -4,7 +4,7 @@ use wgpu_types::{Features, Limits};
 
 use crate::graph::model::{InputKind, ParamKind};
 use crate::graph::value::Value;
-use crate::plan::model::{InputInfo, Param, Request};
+use crate::plan::model::{InputInfo, Param, Plan, Request};
 use crate::program::Program;
 
 /// A scene that has everything that the graph asks for, also what is optional.
@@ -60,10 +60,12 @@ fn attributes(program: &Program, optional_too: bool) -> Vec<String> {
     names
 }
 
-/// One thing at a time otherwise, with words that say what.
-pub(super) fn others(program: &Program, base: &Request, params: &[Param]) -> Vec<(String, Request)> {
+/// One thing at a time otherwise, with words that say what. `plan` is the plan of `base`: whether
+/// a parameter's value fits where a uniform holds it was seen there, so that only parameters on
+/// which more hangs are tried.
+pub(super) fn others(program: &Program, base: &Request, plan: &Plan) -> Vec<(String, Request)> {
     let mut all = Vec::new();
-    for param in params {
+    for param in plan.params.iter().filter(|param| plan.structural.contains(&param.path)) {
         for value in other_values(param) {
             let mut request = base.clone();
             request.params.insert(param.path.clone(), value.clone());

@@ -1,17 +1,17 @@
 //! What is read was written before: program order over subresources, conflicts inside a pass, and
 //! the rules of state.
 
-use std::collections::BTreeSet;
+use std::collections::BTreeMap;
 
 use super::lower::{FlatPass, Lowering, Place, fault, traced};
-use super::model::{Access, Bound, ObjectId, ObjectKind, Origin, PassKind};
+use super::model::{Access, Bound, ObjectId, ObjectKind, ObjectRef, Origin, Output, PassKind};
 use crate::diagnostic::{Code, Diagnostic};
 
 /// For each object, which (mip, layer) something wrote.
 struct Written(Vec<Vec<bool>>);
 
 /// Checks the flat list in program order.
-pub(super) fn check(lowering: &mut Lowering<'_>) {
+pub(super) fn check(lowering: &mut Lowering<'_>, outputs: &[Output]) {
     let mut faults: Vec<Box<Diagnostic>> = Vec::new();
     let mut written = Written::at_start(lowering);
     let mut before_steps: Option<(usize, Vec<Vec<bool>>)> = None;
@@ -25,8 +25,11 @@ pub(super) fn check(lowering: &mut Lowering<'_>) {
             }
             _ => {}
         }
+        let conflict = conflict(lowering, flat);
         for (access, place) in flat.pass.accesses.iter().zip(&flat.places) {
+            let in_conflict = conflict.as_ref().is_some_and(|(object, _)| *object == access.object);
             if access.read
+                && !in_conflict
                 && let Some(fault) = written.missing(lowering, flat, access, place)
             {
                 faults.push(fault);
@@ -35,8 +38,13 @@ pub(super) fn check(lowering: &mut Lowering<'_>) {
         for access in flat.pass.accesses.iter().filter(|a| a.write) {
             written.mark(lowering, access);
         }
-        faults.extend(conflict(lowering, flat));
+        faults.extend(conflict.map(|(_, fault)| fault));
     }
+    if let Some((_, saved)) = before_steps {
+        written.0 = saved;
+    }
+    faults.extend(outputs.iter().filter_map(|output| written.missing_output(lowering, output)));
+    faults.extend(hidden_writes(lowering, outputs));
     faults.extend(state_rules(lowering));
     for fault in faults {
         lowering.diagnostics.push(*fault);
@@ -97,6 +105,29 @@ impl Written {
         Some(traced(diagnostic.hint(hint), &flat.trace))
     }
 
+    /// An output that holds nothing at the end.
+    fn missing_output(&self, lowering: &Lowering<'_>, output: &Output) -> Option<Box<Diagnostic>> {
+        let id = lowering.object_id(output.object);
+        if self.0[id].iter().any(|written| *written) {
+            return None;
+        }
+        let object = &lowering.objects[id].object;
+        let message = format!("nothing writes the output `{}`", output.name);
+        let mut diagnostic = fault(Code::NEVER_WRITTEN, message, output.span, "put out here");
+        if object.span != output.span {
+            diagnostic = diagnostic.see(object.span, "declared here");
+        }
+        let steps = lowering.flat.iter().find(|flat| {
+            flat.pass.accesses.iter().any(|access| access.write && lowering.object_id(access.object) == id)
+        });
+        Some(Box::new(match steps {
+            Some(flat) => diagnostic
+                .see(flat.word, "written only in `Steps`")
+                .hint(format!("a frame may run no step: declare `{}` under `state:`", object.path)),
+            None => diagnostic.hint("put a pass that writes it, or drop the output"),
+        }))
+    }
+
     fn mark(&mut self, lowering: &Lowering<'_>, access: &Access) {
         for id in lowering.object_ids(access.object) {
             for sub in subresources(lowering, id, access, false) {
@@ -128,14 +159,14 @@ pub(super) fn subresources(
 }
 
 /// One subresource cannot be written and used otherwise in one pass.
-fn conflict(lowering: &Lowering<'_>, flat: &FlatPass) -> Option<Box<Diagnostic>> {
+fn conflict(lowering: &Lowering<'_>, flat: &FlatPass) -> Option<(ObjectRef, Box<Diagnostic>)> {
     let accesses = &flat.pass.accesses;
     for (i, a) in accesses.iter().enumerate() {
         for (j, b) in accesses.iter().enumerate().skip(i + 1) {
             let same = a.object == b.object;
             let exclusive = a.write || b.write || writable(flat, i) || writable(flat, j);
             if same && exclusive && overlap(&a.mips, &b.mips) && overlap(&a.layers, &b.layers) {
-                return Some(report_conflict(lowering, flat, i, j));
+                return Some((a.object, report_conflict(lowering, flat, i, j)));
             }
         }
     }
@@ -159,7 +190,11 @@ fn writable(flat: &FlatPass, access: usize) -> bool {
 fn report_conflict(lowering: &Lowering<'_>, flat: &FlatPass, i: usize, j: usize) -> Box<Diagnostic> {
     let (a, b) = (&flat.places[i], &flat.places[j]);
     let name = &lowering.object(flat.pass.accesses[i].object).object.path;
-    let message = format!("the pass uses `{name}` twice, and one of the uses writes it");
+    let both_write = flat.pass.accesses[i].write && flat.pass.accesses[j].write;
+    let message = match both_write {
+        true => format!("the pass writes `{name}` twice"),
+        false => format!("the pass uses `{name}` twice, and one of the uses writes it"),
+    };
     let mut diagnostic = fault(Code::READ_WRITE_CONFLICT, message, a.graph, format!("as `{}`", a.name));
     if a.graph != b.graph {
         diagnostic = diagnostic.at(b.graph, format!("as `{}`", b.name));
@@ -169,12 +204,35 @@ fn report_conflict(lowering: &Lowering<'_>, flat: &FlatPass, i: usize, j: usize)
             diagnostic = diagnostic.see(span, "the shader's variable");
         }
     }
-    let hint = "write to another resource of the same kind (`Like(...)`), and swap them in a `Repeat` if it goes on";
+    let hint = match both_write {
+        true => "give each of them a resource of its own, or a layer of its own",
+        false => "write to another resource of the same kind (`Like(...)`), and swap them in a `Repeat` if it goes on",
+    };
     traced(diagnostic.hint(hint), &flat.trace)
 }
 
 fn overlap(a: &std::ops::Range<u32>, b: &std::ops::Range<u32>) -> bool {
     a.start < b.end && b.start < a.end
+}
+
+/// A part tells its users what it writes: an input that it writes is among its outputs.
+fn hidden_writes(lowering: &Lowering<'_>, outputs: &[Output]) -> Vec<Box<Diagnostic>> {
+    let mut faults = Vec::new();
+    for (id, building) in lowering.objects.iter().enumerate() {
+        let Origin::Input(name) = &building.object.origin else { continue };
+        if outputs.iter().any(|output| lowering.object_id(output.object) == id) {
+            continue;
+        }
+        let writes =
+            |flat: &&FlatPass| flat.pass.accesses.iter().any(|a| a.write && lowering.object_id(a.object) == id);
+        let Some(flat) = lowering.flat.iter().find(writes) else { continue };
+        let message = format!("the graph writes its input `{name}` and does not put it out");
+        let diagnostic = fault(Code::BAD_PASS, message, flat.word, "written by this pass")
+            .see(building.object.span, "declared here")
+            .hint(format!("add \"{name}\" to `outputs`, or copy it to a resource first"));
+        faults.push(traced(diagnostic, &flat.trace));
+    }
+    faults
 }
 
 /// State is written inside exactly one `Steps`.
@@ -185,14 +243,14 @@ fn state_rules(lowering: &mut Lowering<'_>) -> Vec<Box<Diagnostic>> {
             continue;
         }
         let object = &lowering.objects[id].object;
-        let mut writers = BTreeSet::new();
+        let mut writers = BTreeMap::new();
         for flat in &lowering.flat {
             for (access, place) in flat.pass.accesses.iter().zip(&flat.places) {
                 if !access.write || !lowering.object_ids(access.object).contains(&id) {
                     continue;
                 }
                 match flat.pass.steps {
-                    Some(steps) => _ = writers.insert(steps),
+                    Some(steps) => _ = writers.entry(steps).or_insert(place.graph),
                     None => {
                         let message = format!("the state `{}` is written outside `Steps`", object.path);
                         let diagnostic = fault(Code::STATE, message, place.graph, "written here")
@@ -203,10 +261,15 @@ fn state_rules(lowering: &mut Lowering<'_>) -> Vec<Box<Diagnostic>> {
                 }
             }
         }
-        let steps = writers.first().copied();
+        let steps = writers.keys().next().copied();
         if writers.len() > 1 {
             let message = format!("the state `{}` is written in {} different `Steps`", object.path, writers.len());
-            faults.push(Box::new(fault(Code::STATE, message, object.span, "declared as state")));
+            let mut diagnostic = Diagnostic::error(Code::STATE, message);
+            for (steps, at) in &writers {
+                diagnostic = diagnostic.at(*at, format!("written in `{}`", lowering.steps[*steps].path));
+            }
+            let diagnostic = diagnostic.see(object.span, "declared as state");
+            faults.push(Box::new(diagnostic.hint("state belongs to one `Steps`: give the other one its own")));
         }
         let read = lowering
             .flat
@@ -215,11 +278,18 @@ fn state_rules(lowering: &mut Lowering<'_>) -> Vec<Box<Diagnostic>> {
             .any(|a| a.read && lowering.object_ids(a.object).contains(&id));
         if steps.is_none() && read && faults.is_empty() {
             let message = format!("nothing writes the state `{}`", object.path);
-            faults.push(Box::new(fault(Code::NEVER_WRITTEN, message, object.span, "declared as state")));
+            let diagnostic = fault(Code::NEVER_WRITTEN, message, object.span, "declared as state")
+                .hint("write it inside `Steps(rate: ..., passes: [...])`");
+            faults.push(Box::new(diagnostic));
         }
         if let Some(steps) = steps {
             lowering.objects[id].object.origin = Origin::State(steps);
         }
     }
     faults
+}
+
+/// Whether any pass writes the object.
+pub(super) fn writes(flat: &[FlatPass], object: ObjectRef) -> bool {
+    flat.iter().flat_map(|f| &f.pass.accesses).any(|a| a.write && a.object == object)
 }

@@ -51,12 +51,19 @@ fn plan(program: &Program, request: &Request, stand_in: bool) -> Result<Plan, Di
     if lowering.diagnostics.has_errors() {
         return Err(lowering.diagnostics);
     }
-    flow::check(&mut lowering);
+    flow::check(&mut lowering, &outputs);
     if lowering.diagnostics.has_errors() {
         return Err(lowering.diagnostics);
     }
-    let warnings = unused(&lowering, &outputs);
+    let mut warnings = unused(&lowering);
+    let unread = unread(&lowering, &outputs);
     let culled = cull::cull(&mut lowering, &roots);
+    // What only culled passes write is said of these.
+    for (object, is_written, diagnostic) in unread {
+        if !is_written || flow::writes(&lowering.flat, object) {
+            warnings.push(diagnostic);
+        }
+    }
     let argument_slots = insert::insert(&mut lowering);
     insert::cover_steps(&mut lowering);
     let units = units::units(&mut lowering);
@@ -114,6 +121,7 @@ fn finish(
         memory,
         needs,
         params: lowering.params.into_values().collect(),
+        structural: lowering.structural,
         taken: lowering.program.taken(),
         argument_slots,
         warnings,
@@ -122,15 +130,13 @@ fn finish(
 
 /// Parameters that were asked for by a name that nothing bears.
 fn unknown_params(lowering: &mut Lowering<'_>) {
-    // Parameters of parts are known only once the parts are there; see `after`.
-    let own: Vec<String> = lowering.program.root.params.iter().map(|p| p.name.value.clone()).collect();
-    let unknown: Vec<String> =
-        lowering.request.params.keys().filter(|path| !path.contains('.') && !own.contains(path)).cloned().collect();
-    for path in unknown {
+    for path in lowering.request.params.keys() {
+        let Err(known) = lowering.program.has_param(path) else { continue };
         let message = format!("there is no parameter `{path}`");
         let diagnostic = Diagnostic::error(Code::UNKNOWN_NAME, message)
             .at(lowering.program.root.span, "in this graph")
-            .nearest(&path, own.iter().map(String::as_str));
+            .nearest(path, known.iter().map(String::as_str))
+            .hint("`plan` lists the parameters; what a `Use` gives cannot be set from outside");
         lowering.diagnostics.push(diagnostic);
     }
 }
@@ -149,7 +155,8 @@ fn outputs(lowering: &mut Lowering<'_>) -> Vec<Output> {
         let entity = lowering.resolve(0, &output.of.value, output.of.span);
         match lowering.report(entity) {
             Some(Entity::Var(var)) => {
-                outputs.push(Output { name: output.name.value.clone(), object: lowering.vars[var].now });
+                let object = lowering.vars[var].now;
+                outputs.push(Output { name: output.name.value.clone(), object, span: output.of.span });
             }
             // Parts put out scalars and inputs too; those need no pass.
             Some(_) | None => {}
@@ -201,8 +208,8 @@ fn names(lowering: &Lowering<'_>) -> BTreeMap<String, ObjectRef> {
     names
 }
 
-/// Declarations that nothing asked for, and resources that nothing reads.
-fn unused(lowering: &Lowering<'_>, outputs: &[Output]) -> Diagnostics {
+/// Declarations that nothing asked for.
+fn unused(lowering: &Lowering<'_>) -> Diagnostics {
     let mut found = Diagnostics::new();
     let mut seen = BTreeSet::new();
     for scope in &lowering.scopes {
@@ -211,7 +218,7 @@ fn unused(lowering: &Lowering<'_>, outputs: &[Output]) -> Diagnostics {
             continue;
         }
         let declared = (graph.params.iter().map(|p| (&p.name, "parameter")))
-            .chain(graph.lets.iter().map(|l| (&l.name, "name")))
+            .chain(graph.lets.iter().map(|l| (&l.name, "`let`")))
             .chain(graph.samplers.iter().map(|s| (&s.name, "sampler")))
             .chain(graph.resources.iter().map(|r| (&r.name, "resource")))
             .chain(graph.inputs.iter().map(|i| (&i.name, "input")));
@@ -222,6 +229,12 @@ fn unused(lowering: &Lowering<'_>, outputs: &[Output]) -> Diagnostics {
             }
         }
     }
+    found
+}
+
+/// Resources that nothing reads, and whether something writes them.
+fn unread(lowering: &Lowering<'_>, outputs: &[Output]) -> Vec<(ObjectRef, bool, Diagnostic)> {
+    let mut found = Vec::new();
     let mut given: BTreeSet<ObjectRef> = outputs.iter().map(|o| o.object).collect();
     // What a part puts out is there for whoever wants it.
     for scope in &lowering.scopes {
@@ -239,7 +252,10 @@ fn unused(lowering: &Lowering<'_>, outputs: &[Output]) -> Diagnostics {
         let of_frame = building.object.origin == model::Origin::Frame;
         if of_frame && !attached.contains(&object) && !given.contains(&object) && !read.contains(&object) {
             let message = format!("nothing reads `{}`", building.object.path);
-            found.push(Diagnostic::warning(Code::NEVER_READ, message).at(building.object.span, "declared here"));
+            let diagnostic = Diagnostic::warning(Code::NEVER_READ, message)
+                .at(building.object.span, "declared here")
+                .hint("put it among the `outputs`, or leave it and what writes it out");
+            found.push((object, flow::writes(&lowering.flat, object), diagnostic));
         }
     }
     found
@@ -283,9 +299,13 @@ fn seal_steps(lowering: &mut Lowering<'_>, units: &[model::Unit]) {
         let fault = lowering.flat.iter().find(|f| f.pass.steps == Some(index) && sees(&units[f.pass.unit].causes));
         if let Some(flat) = fault {
             let message = format!("`{}` runs at a rate and depends on the camera", flat.pass.path);
-            let diagnostic = Diagnostic::error(Code::STATE, message)
-                .at(flat.word, "this pass")
+            let mut diagnostic = Diagnostic::error(Code::STATE, message).at(flat.word, "this pass");
+            if let Some(by) = lowering.flat.iter().find(|other| sees(&other.causes)).filter(|by| by.word != flat.word) {
+                diagnostic = diagnostic.see(by.word, "reads the camera, and what it makes comes there");
+            }
+            let diagnostic = diagnostic
                 .hint("what happens over time is the same from every viewpoint; say `rate: PerFrame` if it is not");
+            let diagnostic = *lower::traced(diagnostic, &flat.trace);
             lowering.diagnostics.push(diagnostic);
         }
     }

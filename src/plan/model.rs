@@ -46,6 +46,9 @@ pub struct Plan {
     pub needs: Needs,
     /// Parameters under their instance paths, with the values that this plan was made for.
     pub params: Vec<Param>,
+    /// Instance paths of those on which more hangs than what a uniform holds: sizes, counts, tests,
+    /// constants, arithmetic.
+    pub structural: BTreeSet<String>,
     /// Each `graph:` or `shader:` as written, and the file that was taken.
     pub taken: BTreeMap<String, PathBuf>,
     /// Number of 32-byte slots for indirect arguments that the engine's kernels write.
@@ -439,6 +442,8 @@ pub struct Culled {
 pub struct Output {
     pub name: String,
     pub object: ObjectRef,
+    /// Where the graph puts it out.
+    pub span: Span,
 }
 
 /// Which objects share memory, under both policies of rule 38.

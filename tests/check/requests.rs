@@ -154,5 +154,6 @@ fn more_particles_than_the_device_can_bind() {
         if let Some(InputInfo::Particles { count, .. }) = r.inputs.get_mut("particles") {
             *count = 100_000_000;
         }
+        r.roots.push("speeds".into());
     });
 }

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use meniscus::diagnostic::{Style, render_all};
+use meniscus::diagnostic::{Severity, Style, render_all};
 use meniscus::files::DiskFiles;
 
 use super::all_said;
@@ -33,7 +33,8 @@ fn shipped_graphs_have_no_errors_and_no_warnings() {
     let mut reports = Vec::new();
     for path in graphs() {
         let (found, sources) = all_said(&DiskFiles, path.to_str().unwrap(), None);
-        if !found.is_empty() {
+        // Notes tell what a device must have.
+        if found.iter().any(|d| d.severity != Severity::Note) {
             reports.push(format!("{}:\n{}", path.display(), render_all(&found, &sources, Style::Plain)));
         }
     }

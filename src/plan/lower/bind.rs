@@ -7,7 +7,7 @@ use wgpu_types::{BufferUsages, Features, ShaderStages, TextureUsages};
 use super::names::Entity;
 use super::nodes::{Draft, Viewed};
 use super::{Layout, Lowering, Place, Result, ScopeId, fault, traced};
-use crate::diagnostic::{Code, Diagnostic, Span};
+use crate::diagnostic::{Code, Diagnostic, Label, Span};
 use crate::format::{self, SampleKind, TextureFormat};
 use crate::graph::expr::ExprKind;
 use crate::graph::model::{self as ast, Address, Compare, Name, Sampler, Sp};
@@ -149,10 +149,14 @@ impl Lowering<'_> {
             GlobalKind::Sampler { comparison } => self.feed_sampler(s, &place, *comparison, found.map(|(e, _)| e)),
             GlobalKind::Other(what) => {
                 let message = format!("a graph cannot feed {what}");
-                Err(traced(fault(Code::BINDING_MISMATCH, message, global.span, "this variable"), &self.scopes[s].trace))
+                let diagnostic = fault(Code::BINDING_MISMATCH, message, global.span, "this variable");
+                Err(traced(diagnostic.see(stages.at, "run by this pass"), &self.scopes[s].trace))
             }
             GlobalKind::Storage { .. } | GlobalKind::Texture { .. } | GlobalKind::StorageTexture { .. } => {
                 let Some((entity, view)) = found else { return Err(self.unbound(s, &place)) };
+                if matches!(entity, Entity::Absent) {
+                    return Err(self.absent_fed_to(s, &place));
+                }
                 let Entity::Var(var) = entity else { return Err(self.mismatch(s, &place, &entity)) };
                 let viewed = match view {
                     Some(view) => self.view(s, &view)?,
@@ -166,6 +170,24 @@ impl Lowering<'_> {
                 }
             }
         }
+    }
+
+    /// An optional input that a shader takes as if it were always there.
+    pub(super) fn absent_fed_to(&self, s: ScopeId, place: &Feed<'_>) -> Box<Diagnostic> {
+        let bound = place.bind.iter().find(|(name, _)| name.value == place.global().name);
+        let (name, span) = match bound {
+            Some((_, ast::Bound::View(view))) => (view.of.value.as_str(), view.of.span),
+            Some((_, ast::Bound::Expr(expr))) => match &expr.kind {
+                ExprKind::Name(path) => (path.as_str(), expr.span),
+                _ => (place.global().name.as_str(), place.at),
+            },
+            None => (place.global().name.as_str(), place.at),
+        };
+        let mut diagnostic = self.absent_here(s, name, span);
+        diagnostic
+            .labels
+            .insert(1, Label { span: place.global().span, text: "the shader's variable".into(), primary: false });
+        diagnostic
     }
 
     /// A whole object as a view.
@@ -250,7 +272,8 @@ impl Lowering<'_> {
         let Some(mut layout) = found else {
             let message =
                 format!("`{}` is a counted buffer, and the shader sees `{}`", building.object.path, ty.wgsl());
-            let diagnostic = fault(Code::BINDING_MISMATCH, message, global.span, "the shader's variable")
+            let diagnostic = fault(Code::COUNTED, message, global.span, "the shader's variable")
+                .see(place.at, "fed by this pass")
                 .see(building.object.span, "declared here")
                 .hint("a writer declares `struct { count: atomic<u32>, items: array<T> }`, a reader `count: u32`");
             return Err(traced(diagnostic, &self.scopes[s].trace));
@@ -271,6 +294,7 @@ impl Lowering<'_> {
                 format!("`{}`, {} bytes each", layout.item.wgsl(), layout.stride),
             )
             .see(first.span, format!("`{}`, {} bytes each", first.item.wgsl(), first.stride))
+            .see(building.object.span, "declared here")
             .hint(difference(&first.item, &layout.item));
             return Err(traced(diagnostic, &self.scopes[s].trace));
         }
@@ -320,6 +344,7 @@ impl Lowering<'_> {
             let message =
                 format!("`{}` is tightly packed, 12 bytes each, and `array<vec3<...>>` takes 16", global.name);
             let diagnostic = fault(Code::BINDING_MISMATCH, message, global.span, "16 bytes each")
+                .see(place.at, "fed by this pass")
                 .hint("import \"lib/packed.wgsl\" and declare `array<Packed3>`");
             return Err(traced(diagnostic, &self.scopes[s].trace));
         }
@@ -333,7 +358,8 @@ impl Lowering<'_> {
             global.name,
             layout.item.wgsl()
         );
-        let diagnostic = fault(Code::BINDING_MISMATCH, message, global.span, "does not fit").hint(match components {
+        let diagnostic = fault(Code::BINDING_MISMATCH, message, global.span, "does not fit");
+        let diagnostic = diagnostic.see(place.at, "fed by this pass").hint(match components {
             1 => "declare `array<f32>`, `array<u32>` or `array<i32>`".to_owned(),
             3 => "import \"lib/packed.wgsl\" and declare `array<Packed3>`".to_owned(),
             n => format!("declare `array<vec{n}<f32>>`"),
@@ -360,6 +386,7 @@ impl Lowering<'_> {
                 let message = format!("{} cannot be filtered", format::name(texture.format));
                 let diagnostic =
                     fault(Code::FORMAT, message, place.wanted.global.span, "sampled with a linear sampler")
+                        .see(place.at, "in this pass")
                         .see(self.object(object).object.span, "declared here")
                         .hint("use a nearest sampler or `textureLoad`");
                 return Err(traced(diagnostic, &self.scopes[s].trace));
@@ -482,7 +509,13 @@ impl Lowering<'_> {
             let (is, wants) =
                 if comparison { ("does not compare", "compares") } else { ("compares", "does not compare") };
             let message = format!("`{}` {is}, and the shader wants one that {wants}", sampler.name.value);
-            let diagnostic = fault(Code::BINDING_MISMATCH, message, place.wanted.global.span, "the shader's sampler");
+            let diagnostic = fault(Code::BINDING_MISMATCH, message, place.wanted.global.span, "the shader's sampler")
+                .see(place.at, "fed by this pass")
+                .hint(if comparison {
+                    "`depth_compare` compares; so does a sampler that is declared with `compare:`"
+                } else {
+                    "declare it as `sampler_comparison`, or bind a sampler without `compare:`"
+                });
             return Err(traced(diagnostic, &self.scopes[s].trace));
         }
         let same = |other: &Sampler| {
@@ -544,8 +577,15 @@ impl Lowering<'_> {
         for (name, _) in bind {
             if !known.contains(&name.value.as_str()) {
                 let message = format!("the shader has no `{}` to bind", name.value);
-                let diagnostic = fault(Code::UNKNOWN_BINDING, message, name.span, "not in the shader")
+                let mut diagnostic = fault(Code::UNKNOWN_BINDING, message, name.span, "not in the shader")
                     .nearest(&name.value, known.iter().copied());
+                if let Some((_, entry)) = stages.entries.first() {
+                    diagnostic = diagnostic.see(entry.span, "in this shader");
+                }
+                if known.len() <= 12 {
+                    let names: Vec<String> = known.iter().map(|name| (*name).to_owned()).collect();
+                    diagnostic = diagnostic.hint(format!("it has {}", super::names::list(&names)));
+                }
                 self.diagnostics.push(*traced(diagnostic, &self.scopes[s].trace));
             }
         }

@@ -4,7 +4,7 @@ use wgpu_types::{BufferUsages, Features, ShaderStages, TextureUsages};
 
 use super::bind::Stages;
 use super::extent::Items;
-use super::nodes::{Draft, whole_write};
+use super::nodes::{Draft, amount, whole_write};
 use super::{Lowering, Place, Result, ScopeId, fault, traced};
 use crate::diagnostic::{Code, Span};
 use crate::format::{self, SampleKind, TextureFormat};
@@ -39,8 +39,15 @@ impl Lowering<'_> {
         let shader = self.feed(s, &stages, &draw.bind, &mut draft);
         let geometry = if fullscreen { Geometry::Fullscreen } else { self.geometry(s, draw, node.word, &mut draft)? };
         let covers = fullscreen && draw.region.is_none() && !fragment.as_ref().is_some_and(|f| f.discards);
-        let color = self.targets(s, draw, fragment.as_ref(), covers, node.word, &mut draft)?;
-        let depth = self.depth(s, draw, fragment.as_ref(), &mut draft)?;
+        let color = self.targets(s, draw, fragment.as_ref(), covers, node.word, &mut draft);
+        let depth = self.depth(s, draw, fragment.as_ref(), node.word, &mut draft);
+        let (color, depth) = match (color, depth) {
+            (Err(color), Err(depth)) => {
+                self.diagnostics.push(*color);
+                return Err(depth);
+            }
+            (color, depth) => (color?, depth?),
+        };
         let (extent, samples) = self.extent(s, draw, &color, depth.as_ref(), node.word)?;
         let region = self.region(s, draw, extent, &mut draft)?;
         draft.kind = PassKind::Draw(Box::new(Draw {
@@ -142,7 +149,9 @@ impl Lowering<'_> {
             }),
             (Items::Counted(..), Items::Counted(..)) => {
                 let message = "vertices and instances cannot both come from counted buffers";
-                Err(traced(fault(Code::BAD_PASS, message, word, "this draw"), &self.scopes[s].trace))
+                let diagnostic = fault(Code::COUNTED, message, word, "this draw")
+                    .hint("draw once for each item (`instances: Each(...)`) with a fixed number of vertices");
+                Err(traced(diagnostic, &self.scopes[s].trace))
             }
             (Items::Counted(object, _), Items::Known(i)) => {
                 let kind =
@@ -205,8 +214,16 @@ impl Lowering<'_> {
                 "an item of `{}` has {} bytes, and a draw's arguments have {bytes}",
                 indirect.buffer.value, buffer.stride
             );
-            let diagnostic = fault(Code::BINDING_MISMATCH, message, indirect.span, "arguments of this draw")
-                .hint("import \"lib/indirect.wgsl\" and declare `array<DrawArgs>`");
+            let declared = self.object(object).layout.as_ref().map(|layout| layout.span);
+            let mut diagnostic = fault(Code::BINDING_MISMATCH, message, indirect.span, "arguments of this draw");
+            if let Some(span) = declared {
+                diagnostic = diagnostic.see(span, "as a shader sees it");
+            }
+            let hint = match indices {
+                Some(_) => "arguments are five u32: indices, instances, first index, base vertex, and 0",
+                None => "arguments are four u32: vertices, instances, first vertex, and 0; `array<vec4u>` holds them",
+            };
+            let diagnostic = diagnostic.hint(hint);
             return Err(traced(diagnostic, &self.scopes[s].trace));
         }
         self.buffer_usage(object, BufferUsages::STORAGE);
@@ -225,17 +242,27 @@ impl Lowering<'_> {
         draft: &mut Draft,
     ) -> Result<Vec<ColorTarget>> {
         let mut targets = Vec::new();
+        let mut wrong = None;
         for (i, target) in draw.color.iter().enumerate() {
             let output = fragment.and_then(|f| f.outputs.iter().find(|o| o.location as usize == i));
-            let made = self.target(s, target, i, fragment, output, covers, draft);
-            targets.extend(self.report(made));
+            match self.target(s, target, i, fragment, output, covers, draft) {
+                Ok(made) => targets.push(made),
+                Err(fault) => {
+                    if let Some(earlier) = wrong.replace(fault) {
+                        self.diagnostics.push(*earlier);
+                    }
+                }
+            }
+        }
+        if let Some(fault) = wrong {
+            return Err(fault);
         }
         for output in fragment.iter().flat_map(|f| &f.outputs) {
             if output.location as usize >= draw.color.len() {
                 let message = format!(
-                    "the fragment stage puts out `@location({})`, and the pass has {} colour targets",
+                    "the fragment stage puts out `@location({})`, and the pass has {}",
                     output.location,
-                    draw.color.len()
+                    amount(draw.color.len() as u64, "colour target")
                 );
                 let diagnostic = fault(Code::TARGET_MISMATCH, message, output.span, "put out here")
                     .see(word, "this pass")
@@ -261,7 +288,7 @@ impl Lowering<'_> {
         let format = texture.format;
         let declared = self.object(view.object).object.span;
         if format.is_depth_stencil_format() || !format::is_renderable(format, Features::all()) {
-            let message = format!("{} cannot be a colour target", format::name(format));
+            let message = format!("a texture of {} cannot be a colour target", format::name(format));
             let diagnostic =
                 fault(Code::FORMAT, message, target.span, "a colour target").see(declared, "declared here");
             return Err(traced(diagnostic, &self.scopes[s].trace));
@@ -278,6 +305,7 @@ impl Lowering<'_> {
             if let Some(fragment) = fragment {
                 diagnostic = diagnostic.see(fragment.span, "the fragment stage");
             }
+            diagnostic = diagnostic.hint(format!("put out `@location({location})`, or drop the target"));
             return Err(traced(diagnostic, &self.scopes[s].trace));
         };
         if !output_fits(&output.ty, format, target.blend.as_ref().map(|b| &b.value)) {
@@ -332,8 +360,10 @@ impl Lowering<'_> {
             self.features |= Features::FLOAT32_BLENDABLE;
             return Ok(());
         }
-        let message = format!("{} cannot blend", format::name(format));
-        let diagnostic = fault(Code::FORMAT, message, at, "blends").see(declared, "declared here");
+        let message = format!("a target of {} cannot blend", format::name(format));
+        let diagnostic = fault(Code::FORMAT, message, at, "blends")
+            .see(declared, "declared here")
+            .hint("formats of normalized numbers and floats can; whole numbers cannot");
         Err(traced(diagnostic, &self.scopes[s].trace))
     }
 
@@ -389,12 +419,14 @@ impl Lowering<'_> {
         s: ScopeId,
         draw: &ast::Draw,
         fragment: Option<&Entry>,
+        word: Span,
         draft: &mut Draft,
     ) -> Result<Option<DepthTarget>> {
         let Some(depth) = &draw.depth else {
             if let Some(fragment) = fragment.filter(|f| f.writes_frag_depth) {
                 let message = "the fragment stage writes `frag_depth`, and the pass has no depth target";
                 let diagnostic = fault(Code::TARGET_MISMATCH, message, fragment.span, "writes depth")
+                    .see(word, "run by this pass")
                     .hint("say `depth: Nearest(\"...\")`");
                 return Err(traced(diagnostic, &self.scopes[s].trace));
             }
@@ -404,14 +436,14 @@ impl Lowering<'_> {
         let format = texture.format;
         let declared = self.object(view.object).object.span;
         if !format.has_depth_aspect() {
-            let message = format!("{} has no depth", format::name(format));
+            let message = format!("`{}` has no depth: it is {}", depth.to.of.value, format::name(format));
             let diagnostic = fault(Code::FORMAT, message, depth.span, "the depth target")
                 .see(declared, "declared here")
                 .hint("declare it as Depth32Float");
             return Err(traced(diagnostic, &self.scopes[s].trace));
         }
         if depth.stencil.is_some() && !format.has_stencil_aspect() {
-            let message = format!("{} has no stencil", format::name(format));
+            let message = format!("`{}` has no stencil: it is {}", depth.to.of.value, format::name(format));
             let diagnostic = fault(Code::FORMAT, message, depth.span, "tests stencil")
                 .see(declared, "declared here")
                 .hint("declare it as Depth24PlusStencil8 or Depth32FloatStencil8");
@@ -497,7 +529,7 @@ impl Lowering<'_> {
                 Some((_, _, other, samples)) if *other == size && *samples == t.samples => {}
                 Some((at, other, wanted, samples)) => {
                     let message = format!("the targets `{other}` and `{name}` are not of one size");
-                    let label = |size: [u32; 2], n: u32| format!("{} x {}, {n} samples", size[0], size[1]);
+                    let label = |size: [u32; 2], n: u32| format!("{} x {}, {}", size[0], size[1], amount(n, "sample"));
                     let diagnostic = fault(Code::TARGET_MISMATCH, message, span, label(size, t.samples))
                         .see(*at, label(*wanted, *samples));
                     return Err(traced(diagnostic, &self.scopes[s].trace));
@@ -508,7 +540,8 @@ impl Lowering<'_> {
             Some((_, _, size, samples)) => Ok((size, samples)),
             None => {
                 let diagnostic =
-                    fault(Code::BAD_PASS, "a draw needs a colour or depth target", word, "draws to nothing");
+                    fault(Code::BAD_PASS, "a draw needs a colour or depth target", word, "draws to nothing")
+                        .hint("say `color: [\"...\"]` or `depth: Nearest(\"...\")`");
                 Err(traced(diagnostic, &self.scopes[s].trace))
             }
         }

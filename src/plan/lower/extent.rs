@@ -244,11 +244,7 @@ impl Lowering<'_> {
         stage: Stage,
         required: bool,
     ) -> Result<Option<Entry>> {
-        let what = match stage {
-            Stage::Vertex => "vertex",
-            Stage::Fragment => "fragment",
-            Stage::Compute => "compute",
-        };
+        let what = stage_name(stage);
         let all: Vec<&Entry> = module.stage(stage).collect();
         let named = |e: &&&Entry| shader.entries.iter().any(|n| n.value == e.name);
         for name in &shader.entries {
@@ -268,7 +264,10 @@ impl Lowering<'_> {
             [] if !required => Ok(None),
             [] => {
                 let message = format!("`{}` has no {what} entry point", shader.path.value);
-                let diagnostic = fault(Code::ENTRY_POINT, message, shader.path.span, format!("needs `@{what}`"));
+                let mut diagnostic = fault(Code::ENTRY_POINT, message, shader.path.span, format!("needs `@{what}`"));
+                for entry in &module.entries {
+                    diagnostic = diagnostic.see(entry.span, format!("a {} entry point", stage_name(entry.stage)));
+                }
                 Err(traced(diagnostic, &self.scopes[s].trace))
             }
             several => {
@@ -302,5 +301,13 @@ impl Lowering<'_> {
                 Ok(Items::Known(n as u64))
             }
         }
+    }
+}
+
+fn stage_name(stage: Stage) -> &'static str {
+    match stage {
+        Stage::Vertex => "vertex",
+        Stage::Fragment => "fragment",
+        Stage::Compute => "compute",
     }
 }

@@ -85,6 +85,8 @@ pub(super) struct Scope {
     pub counters: Vec<(String, i64)>,
     pub children: BTreeMap<String, ScopeId>,
     pub resources: Vec<Option<VarId>>,
+    /// What feeds it does not fit, and that was said: its passes are left out.
+    pub broken: bool,
     lets: Vec<LetState>,
 }
 
@@ -155,12 +157,16 @@ pub(super) struct Lowering<'a> {
     in_steps: Option<usize>,
     /// `[2]`, or `[2][0]` in a loop in a loop.
     iteration: String,
-    /// Iterations of loops so far.
-    unrolled: usize,
     /// How many names are being resolved for one another.
     depth: usize,
     /// Variables of root inputs: `particles.position`, `color`.
     input_vars: BTreeMap<String, VarId>,
+    /// Names whose values are being worked out, innermost last: one that comes again is a circle.
+    evaluating: Vec<(Span, String)>,
+    /// Parameters that more hangs on than what a uniform holds: sizes, counts, tests, constants.
+    pub structural: BTreeSet<String>,
+    /// Iterations and passes so far.
+    unrolled: u64,
 }
 
 impl<'a> Lowering<'a> {
@@ -186,9 +192,11 @@ impl<'a> Lowering<'a> {
             structure: Vec::new(),
             in_steps: None,
             iteration: String::new(),
-            unrolled: 0,
             depth: 0,
             input_vars: BTreeMap::new(),
+            evaluating: Vec::new(),
+            structural: BTreeSet::new(),
+            unrolled: 0,
         }
     }
 

@@ -38,7 +38,7 @@ pub(in crate::plan) enum Entity {
     },
     /// An optional input, or an attribute of one, that nothing feeds.
     Absent,
-    Use(ScopeId),
+    Part,
     Sampler {
         scope: ScopeId,
         index: usize,
@@ -59,7 +59,7 @@ impl Entity {
                 _ => "an input",
             },
             Entity::Absent => "an optional input that is absent",
-            Entity::Use(_) => "a part",
+            Entity::Part => "a part",
             Entity::Sampler { .. } | Entity::StandardSampler(_) => "a sampler",
         }
     }
@@ -83,6 +83,7 @@ impl Lowering<'_> {
             counters: Vec::new(),
             children: BTreeMap::new(),
             resources: vec![None; graph.resources.len()],
+            broken: false,
             lets: vec![LetState::Waiting; graph.lets.len()],
             graph,
         };
@@ -118,7 +119,10 @@ impl Lowering<'_> {
         };
         match (local, rest) {
             (Local::Input(i), rest) => self.input(s, i, rest, span),
-            (Local::Use(_), None) => Ok(Entity::Use(self.child(s, head, span)?)),
+            (Local::Use(_), None) => {
+                self.child(s, head, span)?;
+                Ok(Entity::Part)
+            },
             (Local::Use(_), Some(output)) => self.output(s, head, output, span),
             (Local::Param(i), None) => Ok(Entity::Scalar(self.param(s, i)?)),
             (Local::Let(i), None) => Ok(Entity::Scalar(self.let_value(s, i)?)),
@@ -164,11 +168,30 @@ impl Lowering<'_> {
                 Ok(Some((path, entity)))
             }
             _ => {
-                let message = format!("`{name}` could be {}", list(&found));
-                let diagnostic = fault(Code::NAME_CLASH, message, span, "this WGSL name")
-                    .hint("rename one of them, or say which with `bind`");
+                let message = format!("`{name}` could be {}: a dot is written `_` in WGSL", list(&found));
+                let mut diagnostic = fault(Code::NAME_CLASH, message, span, "this WGSL name");
+                for path in &found {
+                    let head = path.split('.').next().unwrap_or(path);
+                    if let Some(declared) = self.declared(s, head) {
+                        diagnostic = diagnostic.see(declared, format!("`{path}`"));
+                    }
+                }
+                let diagnostic = diagnostic.hint("rename one of them, or say which with `bind`");
                 Err(traced(diagnostic, &self.scopes[s].trace))
             }
+        }
+    }
+
+    /// Where a name of the graph is declared.
+    fn declared(&self, s: ScopeId, name: &str) -> Option<Span> {
+        let graph = &self.scopes[s].graph;
+        match self.scopes[s].locals.get(name)? {
+            Local::Input(i) => Some(graph.inputs[*i].name.span),
+            Local::Param(i) => Some(graph.params[*i].name.span),
+            Local::Let(i) => Some(graph.lets[*i].name.span),
+            Local::Resource(i) => Some(graph.resources[*i].name.span),
+            Local::Sampler(i) => Some(graph.samplers[*i].name.span),
+            Local::Use(candidates) => candidates.first().map(|(used, _)| used.name.span),
         }
     }
 
@@ -254,6 +277,7 @@ impl Lowering<'_> {
         for (used, _) in &candidates {
             diagnostic = diagnostic.see(used.name.span, "used only in a branch");
         }
+        let diagnostic = diagnostic.hint("put what needs the part into the same branch, or use a part in both");
         Err(traced(diagnostic, &self.scopes[s].trace))
     }
 
@@ -267,6 +291,7 @@ impl Lowering<'_> {
         let child = match self.scopes[s].children.get(&used.name.value) {
             Some(child) => *child,
             None => {
+                self.unroll(s, used.name.span)?;
                 let path = join(&self.scopes[s].path, &used.name.value);
                 let mut trace = self.scopes[s].trace.clone();
                 trace.push(used.name.span);
@@ -274,7 +299,7 @@ impl Lowering<'_> {
                 self.scopes[child].binds = self.binds(&graph, used);
                 self.scopes[s].children.insert(used.name.value.clone(), child);
                 self.give(s, child, used);
-                self.check_inputs(child);
+                self.scopes[child].broken = !self.check_inputs(child);
                 self.declare_params(child);
                 return Ok(child);
             }
@@ -293,7 +318,7 @@ impl Lowering<'_> {
                 let names: Vec<&str> = graph.inputs.iter().map(|i| i.name.value.as_str()).collect();
                 self.diagnostics.push(
                     fault(Code::UNKNOWN_NAME, message, input.span, "unknown input")
-                        .see(graph.span, "the part")
+                        .see(graph.span, inputs_of(graph))
                         .nearest(&input.value, names),
                 );
             }
@@ -377,7 +402,10 @@ impl Lowering<'_> {
             None => diagnostic.at(input.name.span, "the input"),
         };
         let hint = match self.scopes[s].parent {
-            Some(_) => format!("name something outside `{0}`, or say `bind: {{\"{0}\": \"...\"}}`", input.name.value),
+            Some(_) => format!(
+                "where the part is used, declare something called `{0}` or say `bind: {{\"{0}\": \"...\"}}`",
+                input.name.value
+            ),
             None => format!("give the scene an item called `{}`", input.name.value),
         };
         Box::new(diagnostic.hint(hint))
@@ -391,6 +419,20 @@ impl Lowering<'_> {
                 .see(input.name.span, "declared optional")
                 .hint(format!("put what needs it inside `If(test: \"has({name})\", then: [...])`"));
         traced(diagnostic, &self.scopes[s].trace)
+    }
+
+    /// As [`Self::absent`], for a name of the scope that leads to such an input.
+    pub(super) fn absent_here(&self, s: ScopeId, name: &str, span: Span) -> Box<Diagnostic> {
+        let input = self.scopes[s].graph.inputs.iter().position(|i| i.name.value == name);
+        match input {
+            Some(i) if self.scopes[s].graph.inputs[i].optional => self.absent(s, i, span),
+            _ => {
+                let message = format!("the optional input `{name}` may be absent here");
+                let diagnostic = fault(Code::OPTIONAL_INPUT, message, span, "needs it")
+                    .hint("put what needs it inside `If(test: \"has(...)\", then: [...])`");
+                traced(diagnostic, &self.scopes[s].trace)
+            }
+        }
     }
 
     /// An input of the root: what the request says of it.
@@ -459,7 +501,11 @@ impl Lowering<'_> {
         let input = &graph.inputs[i];
         let name = input.name.value.clone();
         let Some(InputInfo::Particles { count, radius, min, max, attributes }) = info else {
-            return Err(self.missing_input(0, i));
+            if info.is_none() {
+                return Err(self.missing_input(0, i));
+            }
+            let message = format!("the input `{name}` wants Particles, and is fed something else");
+            return Err(Box::new(fault(Code::WRONG_KIND, message, input.name.span, "declared here")));
         };
         let Some(field) = field else { return Ok(Entity::Input { root: name, kind: input.kind.clone() }) };
         let value = match field {
@@ -503,6 +549,15 @@ pub(super) fn input_fields(kind: &InputKind) -> impl Iterator<Item = &str> {
         _ => (&[], &[]),
     };
     table.iter().map(|(name, _)| *name).chain(attributes.iter().map(|a| a.name.value.as_str()))
+}
+
+/// `its inputs are a and b`.
+fn inputs_of(graph: &Graph) -> String {
+    let names: Vec<String> = graph.inputs.iter().map(|i| i.name.value.clone()).collect();
+    match names.as_slice() {
+        [] => "it has no inputs".to_owned(),
+        names => format!("its inputs are {}", list(names)),
+    }
 }
 
 fn attributes(kind: &InputKind) -> &[Attribute] {

@@ -3,15 +3,14 @@
 use super::names::{Entity, join};
 use super::{FlatPass, Lowering, Place, Result, ScopeId, VarId, fault, traced};
 use crate::diagnostic::{Code, Span};
-use crate::format;
 use crate::graph::model::{self as ast, Name, Node, NodeKind, Sp};
 use crate::plan::model::{
     Access, Causes, ObjectId, ObjectKind, ObjectRef, Origin, Pass, PassKind, Ring, Steps, UniformValue, View,
 };
 use crate::shader::reflect::TextureDimension;
 
-/// Iterations and passes of all loops together.
-const MAX_UNROLLED: usize = 100_000;
+/// Iterations and passes that a plan may have: a frame of so many would take seconds.
+const MAX_UNROLLED: u64 = 10_000;
 
 /// What a pass is put together from.
 pub(super) struct Draft {
@@ -82,8 +81,10 @@ impl Lowering<'_> {
     fn part(&mut self, s: ScopeId, used: &ast::Use) -> Result<()> {
         let child = self.enter(s, used)?;
         self.used.insert(used.name.span);
-        let graph = self.scopes[child].graph.clone();
-        self.nodes(child, &graph.passes);
+        if !self.scopes[child].broken {
+            let graph = self.scopes[child].graph.clone();
+            self.nodes(child, &graph.passes);
+        }
         Ok(())
     }
 
@@ -99,12 +100,7 @@ impl Lowering<'_> {
         self.structure.push(causes);
         let outer = self.iteration.clone();
         for i in 0..times {
-            self.unrolled += 1;
-            if self.unrolled + self.flat.len() > MAX_UNROLLED {
-                let message = format!("the loops of this graph unroll to more than {MAX_UNROLLED} passes");
-                let diagnostic = fault(Code::OUT_OF_RANGE, message, repeat.times.span, "in this loop");
-                return Err(traced(diagnostic, &self.scopes[s].trace));
-            }
+            self.unroll(s, repeat.times.span)?;
             self.iteration = format!("{outer}[{i}]");
             if let Some(index) = &repeat.index {
                 self.scopes[s].counters.push((index.value.clone(), i));
@@ -122,6 +118,18 @@ impl Lowering<'_> {
         self.iteration = outer;
         self.structure.pop();
         Ok(())
+    }
+
+    /// Counts an iteration, or a pass in one: loops are unrolled, so that they must end soon.
+    pub(super) fn unroll(&mut self, s: ScopeId, at: Span) -> Result<()> {
+        self.unrolled += 1;
+        if self.unrolled <= MAX_UNROLLED {
+            return Ok(());
+        }
+        let message = format!("loops and parts make more than {MAX_UNROLLED} passes");
+        let diagnostic = fault(Code::OUT_OF_RANGE, message, at, "still going on here")
+            .hint("every iteration is a pass of its own: do more work in one dispatch, or fewer iterations");
+        Err(traced(diagnostic, &self.scopes[s].trace))
     }
 
     /// What depends on a counter changes with it.
@@ -172,8 +180,8 @@ impl Lowering<'_> {
 
     fn extent_of(&self, object: ObjectRef) -> String {
         match &self.object(object).object.kind {
-            ObjectKind::Texture(t) => format!(", {} x {}, {} mips", t.width, t.height, t.mips),
-            ObjectKind::Buffer(b) => format!(" of {} items", b.items),
+            ObjectKind::Texture(t) => format!(", {} x {}, {}", t.width, t.height, amount(t.mips, "mip")),
+            ObjectKind::Buffer(b) => format!(" of {}", amount(b.items, "item")),
         }
     }
 
@@ -378,9 +386,7 @@ impl Lowering<'_> {
         let var = match self.resolve(s, &view.of.value, view.of.span)? {
             Entity::Var(var) => var,
             Entity::Absent => {
-                let message = format!("the optional input `{}` may be absent here", view.of.value);
-                let diagnostic = fault(Code::OPTIONAL_INPUT, message, view.of.span, "needs it");
-                return Err(traced(diagnostic, &self.scopes[s].trace));
+                return Err(self.absent_here(s, &view.of.value, view.of.span));
             }
             other => {
                 let message = format!("`{}` is {}, not a texture or buffer", view.of.value, other.what());
@@ -404,8 +410,10 @@ impl Lowering<'_> {
                 let (n, depends) = low.whole(s, expr, what, 0)?;
                 causes.add(&depends);
                 if n >= i64::from(count) {
-                    let message = format!("`{}` has {count} of {what}s, and {n} is asked for", view.of.value);
-                    let diagnostic = fault(Code::OUT_OF_RANGE, message, expr.span, format!("this is {n}"));
+                    let message =
+                        format!("`{}` has {}, and {what} {n} is asked for", view.of.value, amount(count, what));
+                    let diagnostic = fault(Code::OUT_OF_RANGE, message, expr.span, format!("this is {n}"))
+                        .hint(format!("{what}s count from 0"));
                     return Err(traced(diagnostic, &low.scopes[s].trace));
                 }
                 Ok(n as u32..n as u32 + 1)
@@ -453,6 +461,7 @@ impl Lowering<'_> {
             accesses,
             unordered: draft.unordered,
         };
+        self.unrolled += 1;
         self.flat.push(FlatPass {
             pass,
             causes,
@@ -512,10 +521,8 @@ pub(super) fn shown(value: &UniformValue) -> String {
     }
 }
 
-/// The format of a texture object, for messages.
-pub(super) fn format_name(kind: &ObjectKind) -> &'static str {
-    match kind {
-        ObjectKind::Texture(t) => format::name(t.format),
-        ObjectKind::Buffer(_) => "a buffer",
-    }
+/// `1 mip`, `3 mips`.
+pub(super) fn amount(n: impl Into<u64>, what: &str) -> String {
+    let n = n.into();
+    format!("{n} {what}{}", if n == 1 { "" } else { "s" })
 }

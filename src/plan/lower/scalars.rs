@@ -31,9 +31,16 @@ impl eval::Scope for Names<'_, '_> {
                 }
             }
             other => {
-                let message = format!("`{path}` is {}, not a number", other.what());
-                let hint = format!("`size({path})` or `count({path})` are numbers");
-                let diagnostic = fault(Code::WRONG_KIND, message, span, "not a number").hint(hint);
+                let message = format!("`{path}` is {}, not a number", lowering.what(&other));
+                let mut diagnostic = fault(Code::WRONG_KIND, message, span, "not a number");
+                if let Entity::Var(var) = other {
+                    let f = match &lowering.object(lowering.vars[var].now).object.kind {
+                        ObjectKind::Texture(_) => "size",
+                        ObjectKind::Buffer(b) if b.counted => "capacity",
+                        ObjectKind::Buffer(_) => "count",
+                    };
+                    diagnostic = diagnostic.hint(format!("`{f}({path})` is one"));
+                }
                 Err(*traced(diagnostic, &lowering.scopes[self.scope].trace))
             }
         }
@@ -53,6 +60,10 @@ impl<'p> Lowering<'p> {
         let names = Names { lowering: RefCell::new(self), scope: s, causes: RefCell::default() };
         let folded = eval::fold(expr, &names).map_err(Box::new)?;
         let causes = names.causes.into_inner();
+        // Arithmetic can fail at other values than these.
+        if !matches!(expr.kind, ExprKind::Literal(_) | ExprKind::Name(_)) {
+            self.structural.extend(causes.params.iter().cloned());
+        }
         let value = match folded.kind {
             ExprKind::Literal(value) => UniformValue::Known(value),
             _ => UniformValue::Live(folded),
@@ -64,7 +75,9 @@ impl<'p> Lowering<'p> {
     pub fn known(&mut self, s: ScopeId, expr: &Expr) -> Result<(Value, Causes)> {
         let names = Names { lowering: RefCell::new(self), scope: s, causes: RefCell::default() };
         let value = eval::eval(expr, &names).map_err(Box::new)?;
-        Ok((value, names.causes.into_inner()))
+        let causes = names.causes.into_inner();
+        self.structural.extend(causes.params.iter().cloned());
+        Ok((value, causes))
     }
 
     pub fn boolean(&mut self, s: ScopeId, expr: &Expr) -> Result<(bool, Causes)> {
@@ -116,7 +129,7 @@ impl<'p> Lowering<'p> {
             if self.scopes[s].given.contains_key(&graph.params[i].name.value) {
                 continue;
             }
-            let value = self.param(s, i);
+            let value = self.own_param(s, i);
             let Some(Scalar { value: UniformValue::Known(value), .. }) = self.report(value) else { continue };
             let param = &graph.params[i];
             let path = join(&self.scopes[s].path, &param.name.value);
@@ -139,9 +152,15 @@ impl<'p> Lowering<'p> {
         let graph = self.scopes[s].graph.clone();
         let param = &graph.params[i];
         self.used.insert(param.name.span);
-        if let Some((scalar, _)) = self.scopes[s].given.get(&param.name.value) {
-            return Ok(scalar.clone());
+        match self.scopes[s].given.get(&param.name.value) {
+            Some((scalar, _)) => Ok(scalar.clone()),
+            None => self.own_param(s, i),
         }
+    }
+
+    /// The value of a parameter that no `Use` gives.
+    fn own_param(&self, s: ScopeId, i: usize) -> Result<Scalar> {
+        let param = &self.scopes[s].graph.params[i];
         let path = join(&self.scopes[s].path, &param.name.value);
         let causes = Causes { params: [path.clone()].into(), ..Causes::default() };
         let asked = self.request.params.get(&path).cloned();
@@ -188,26 +207,32 @@ impl<'p> Lowering<'p> {
         self.used.insert(derived.name.span);
         match &self.scopes[s].lets[i] {
             LetState::Known(scalar) => return Ok(scalar.clone()),
-            LetState::Evaluating => {
-                let open = graph.lets.iter().zip(&self.scopes[s].lets);
-                let mut diagnostic = Diagnostic::error(Code::CYCLE, format!("`{}` needs itself", derived.name.value));
-                for (other, state) in open {
-                    if matches!(state, LetState::Evaluating) {
-                        diagnostic = diagnostic.at(other.name.span, "part of the circle");
-                    }
-                }
-                return Err(Box::new(diagnostic));
-            }
+            LetState::Evaluating => return Err(self.circle(s, derived.name.span)),
             LetState::Waiting => {}
         }
         self.scopes[s].lets[i] = LetState::Evaluating;
+        self.evaluating.push((derived.name.span, derived.name.value.clone()));
         let result = self.scalar(s, &derived.expr);
+        self.evaluating.pop();
         self.scopes[s].lets[i] = match &result {
             Ok(scalar) if self.scopes[s].counters.is_empty() => LetState::Known(scalar.clone()),
             // It may depend on a loop's counter.
             _ => LetState::Waiting,
         };
         result
+    }
+
+    /// A name that is needed to work out its own value: every edge of the circle is shown.
+    pub(super) fn circle(&self, s: ScopeId, span: Span) -> Box<Diagnostic> {
+        let first = self.evaluating.iter().position(|(open, _)| *open == span).unwrap_or(0);
+        let edges = &self.evaluating[first..];
+        let name = edges.first().map_or("it", |(_, name)| name.as_str());
+        let mut diagnostic = Diagnostic::error(Code::CYCLE, format!("`{name}` needs itself"));
+        for (i, (span, _)) in edges.iter().enumerate() {
+            let needed = &edges[(i + 1) % edges.len()].1;
+            diagnostic = diagnostic.at(*span, format!("needs `{needed}`"));
+        }
+        traced(diagnostic.hint("one of them must be known without the others"), &self.scopes[s].trace)
     }
 
     /// `size(x)`, `count(x)`, `capacity(x)`, `has(x)`, `device(x)`.

@@ -11,7 +11,7 @@ use crate::graph::expr::ExprKind;
 use crate::graph::model::{self as ast, Name};
 use crate::graph::value::Value;
 use crate::plan::fields::{self, FieldType};
-use crate::plan::model::{Access, Bound, ObjectKind, UniformBlock, UniformMember, UniformValue};
+use crate::plan::model::{Access, Bound, ObjectKind, Param, UniformBlock, UniformMember, UniformValue};
 use crate::shader::reflect::{self, Member, Type};
 
 /// Where the members of a block come from, besides `bind` and the names of the scope.
@@ -56,14 +56,8 @@ impl Lowering<'_> {
                 return Ok(Bound::UniformBuffer { buffer: object });
             }
             Some(Entity::Input { root, kind }) => Prefix::Input { root, kind },
-            Some(Entity::Use(_)) => Prefix::Use(place.global().name.clone()),
-            Some(Entity::Absent) => {
-                let name = &place.global().name;
-                let message = format!("the optional input `{name}` may be absent here");
-                let diagnostic = fault(Code::OPTIONAL_INPUT, message, place.at, "needs it")
-                    .see(place.global().span, "the shader's variable");
-                return Err(traced(diagnostic, &self.scopes[s].trace));
-            }
+            Some(Entity::Part) => Prefix::Use(place.global().name.clone()),
+            Some(Entity::Absent) => return Err(self.absent_fed_to(s, place)),
             _ => Prefix::None,
         };
         let block = match ty {
@@ -98,12 +92,15 @@ impl Lowering<'_> {
     ) -> Result<UniformMember> {
         let found = match bound_expr(place.bind, &member.name) {
             Some(expr) => Some((path_of(&expr), self.scalar(s, &expr)?)),
-            None => self.named(s, prefix, member)?,
+            None => self.named(s, prefix, member, place.stages.at)?,
         };
         let Some((path, scalar)) = found else { return Err(self.unfed(s, place, prefix, member)) };
         let scalar = self.word_as_index(s, &path, scalar);
         if !fits(&scalar.value, &member.ty) {
             return Err(self.misfit(s, place, member.span, &member.name, &member.ty.wgsl(), &scalar));
+        }
+        if self.depends_on_value(&scalar, &member.ty) {
+            self.structural.extend(scalar.causes.params.iter().cloned());
         }
         draft.causes.add(&scalar.causes);
         Ok(UniformMember {
@@ -115,7 +112,7 @@ impl Lowering<'_> {
     }
 
     /// The scalar of a member's name.
-    fn named(&mut self, s: ScopeId, prefix: &Prefix, member: &Member) -> Result<Option<(String, Scalar)>> {
+    fn named(&mut self, s: ScopeId, prefix: &Prefix, member: &Member, at: Span) -> Result<Option<(String, Scalar)>> {
         match prefix {
             Prefix::Input { root, kind } if input_fields(kind).any(|field| field == member.name) => {
                 if !matches!(kind, ast::InputKind::Particles { .. }) {
@@ -140,7 +137,8 @@ impl Lowering<'_> {
             Some((path, other)) => {
                 let message =
                     format!("the member `{}` wants a scalar, and `{path}` is {}", member.name, self.what(&other));
-                let diagnostic = fault(Code::UNIFORM_MISMATCH, message, member.span, "the member");
+                let diagnostic =
+                    fault(Code::UNIFORM_MISMATCH, message, member.span, "the member").see(at, "run by this pass");
                 Err(traced(diagnostic, &self.scopes[s].trace))
             }
             None => Ok(None),
@@ -180,15 +178,26 @@ impl Lowering<'_> {
         let is = shown(&scalar.value);
         let message = format!("`{name}` is `{wgsl}` in the shader, and what feeds it is {is}");
         let mut diagnostic = fault(Code::UNIFORM_MISMATCH, message, at, format!("`{wgsl}`"));
-        diagnostic = match scalar.causes.params.iter().next().and_then(|path| self.params.get(path)) {
-            Some(param) if scalar.causes.params.len() == 1 => {
-                diagnostic.see(param.span, format!("a parameter of kind {}", param.kind.name()))
-            }
-            _ => diagnostic,
-        };
+        if let Some(param) = self.only_param(scalar) {
+            diagnostic = diagnostic.see(param.span, format!("a parameter of kind {}", param.kind.name()));
+        }
         let diagnostic = diagnostic.see(place_of(place.bind, name).unwrap_or(place.stages.at), "fed by this pass");
         let hint = "Int feeds i32, u32 and f32; Float f32; Bool and Choice u32; vectors and colours their vec";
         traced(diagnostic.hint(hint), &self.scopes[s].trace)
+    }
+
+    /// The one parameter that a value depends on.
+    fn only_param(&self, scalar: &Scalar) -> Option<&Param> {
+        let path = scalar.causes.params.first().filter(|_| scalar.causes.params.len() == 1)?;
+        self.params.get(path)
+    }
+
+    /// Whether other values of the parameter behind a whole number may not fit where this one does.
+    fn depends_on_value(&self, scalar: &Scalar, ty: &Type) -> bool {
+        let is_whole = matches!(&scalar.value, UniformValue::Known(Value::Int(_)));
+        let is_signed =
+            self.only_param(scalar).is_none_or(|p| p.min.as_ref().and_then(Value::as_int).is_none_or(|m| m < 0));
+        is_whole && is_signed && matches!(ty, Type::Scalar(reflect::Scalar::U32 | reflect::Scalar::I32))
     }
 
     /// WGSL sees a `Choice` as the index of its word.
@@ -271,6 +280,7 @@ impl Lowering<'_> {
         let number = constant_value(value, constant.scalar);
         match number {
             Some(number) => {
+                self.structural.extend(scalar.causes.params.iter().cloned());
                 draft.causes.add(&scalar.causes);
                 Ok(Some(number))
             }
@@ -282,8 +292,11 @@ impl Lowering<'_> {
                     shown(&scalar.value)
                 );
                 let at = place_of(bind, &constant.name).unwrap_or(stages.at);
-                let diagnostic =
+                let mut diagnostic =
                     fault(Code::UNIFORM_MISMATCH, message, constant.span, "the constant").see(at, "fed here");
+                if let Some(param) = self.only_param(&scalar) {
+                    diagnostic = diagnostic.see(param.span, format!("a parameter of kind {}", param.kind.name()));
+                }
                 Err(traced(diagnostic, &self.scopes[s].trace))
             }
         }

@@ -3,6 +3,7 @@
 use wgpu_types::{BufferUsages, TextureUsages};
 
 use super::names::{Entity, join};
+use super::nodes::amount;
 use super::{Building, Lowering, Result, ScopeId, Var, VarId, fault, traced};
 use crate::diagnostic::{Code, Diagnostic, Span};
 use crate::format::{self, TextureFormat};
@@ -11,8 +12,11 @@ use crate::graph::model::{InputKind, Mips, ResourceKind, Sp, ViewDimension};
 use crate::graph::value::Value;
 use crate::plan::model::{Buffer, Causes, InputInfo, Object, ObjectKind, ObjectRef, Origin, Texture};
 
-/// Texels or layers in one direction: above what any device has, below what would take planning long.
-const MAX_EDGE: i64 = 1 << 16;
+/// No device has larger textures; layers are tracked one by one.
+const MAX_EDGE: i64 = 65_536;
+const MAX_LAYERS: i64 = 2048;
+/// More items than any memory has.
+const MAX_ITEMS: i64 = 1 << 40;
 
 impl Lowering<'_> {
     pub(super) fn add_var(&mut self, building: Building) -> VarId {
@@ -30,13 +34,13 @@ impl Lowering<'_> {
             if var != VarId::MAX {
                 return Ok(var);
             }
-            let message = format!("the size of `{}` depends on itself", resource.name.value);
-            let diagnostic = fault(Code::CYCLE, message, resource.name.span, "part of the circle");
-            return Err(traced(diagnostic, &self.scopes[s].trace));
+            return Err(self.circle(s, resource.name.span));
         }
         // Marks it as being evaluated, to find circles.
         self.scopes[s].resources[i] = Some(VarId::MAX);
+        self.evaluating.push((resource.name.span, resource.name.value.clone()));
         let made = self.describe(s, &resource.kind, resource.name.span);
+        self.evaluating.pop();
         self.scopes[s].resources[i] = None;
         let (kind, mips_auto, causes) = made?;
         let object = Object {
@@ -54,11 +58,11 @@ impl Lowering<'_> {
     fn describe(&mut self, s: ScopeId, kind: &ResourceKind, at: Span) -> Result<(ObjectKind, bool, Causes)> {
         match kind {
             ResourceKind::Buffer { items } => {
-                let (items, causes) = self.whole(s, items, "the number of items", 0)?;
+                let (items, causes) = self.item_count(s, items, "the number of items")?;
                 Ok((buffer(items as u64, false), false, causes))
             }
             ResourceKind::Counted { capacity } => {
-                let (declared, mut causes) = self.whole(s, capacity, "the capacity", 0)?;
+                let (declared, mut causes) = self.item_count(s, capacity, "the capacity")?;
                 let name = self.scopes[s].graph.resources.iter().find(|r| r.name.span == at);
                 let path = join(&self.scopes[s].path, name.map_or("", |r| r.name.value.as_str()));
                 let items = self.request.capacities.get(&path).copied().unwrap_or(declared as u64);
@@ -87,6 +91,17 @@ impl Lowering<'_> {
         }
     }
 
+    /// How many items a buffer has.
+    fn item_count(&mut self, s: ScopeId, expr: &Expr, what: &str) -> Result<(i64, Causes)> {
+        let (n, causes) = self.whole(s, expr, what, 0)?;
+        if n > MAX_ITEMS {
+            let message = format!("{what} must be at most {MAX_ITEMS}, and is {n}");
+            let diagnostic = fault(Code::OUT_OF_RANGE, message, expr.span, format!("this is {n}"));
+            return Err(traced(diagnostic, &self.scopes[s].trace));
+        }
+        Ok((n, causes))
+    }
+
     #[expect(clippy::too_many_arguments, reason = "the fields of one declaration")]
     fn texture(
         &mut self,
@@ -94,7 +109,7 @@ impl Lowering<'_> {
         format: &Sp<TextureFormat>,
         size: &[Expr],
         dimension: ViewDimension,
-        layers: Option<&Expr>,
+        given_layers: Option<&Expr>,
         mips: Option<&Mips>,
         samples: Option<&Expr>,
     ) -> Result<(ObjectKind, bool, Causes)> {
@@ -105,10 +120,13 @@ impl Lowering<'_> {
             causes.add(&depends);
             for component in value.components() {
                 match component {
-                    Value::Int(n) if *n >= 1 => edges.push((*n, expr.span)),
+                    Value::Int(n) if (1..=MAX_EDGE).contains(n) => edges.push((*n, expr.span)),
                     Value::Int(n) => {
-                        let message = format!("a texture's edge must be at least 1 texel, and is {n}");
-                        let diagnostic = fault(Code::OUT_OF_RANGE, message, expr.span, format!("this is {value}"));
+                        let message = format!("a texture's edge must be from 1 to {MAX_EDGE} texels, and is {n}");
+                        let mut diagnostic = fault(Code::OUT_OF_RANGE, message, expr.span, format!("this is {value}"));
+                        if *n < 1 {
+                            diagnostic = diagnostic.hint("`max(1, ...)` keeps it above 0");
+                        }
                         return Err(traced(diagnostic, &self.scopes[s].trace));
                     }
                     Value::Float(x) => {
@@ -146,8 +164,10 @@ impl Lowering<'_> {
             }
         };
         let default_layers = if dimension == ViewDimension::Cube { 6 } else { 1 };
-        let layers = if is_3d { edges[2].0 } else { count(self, layers, "the number of layers", default_layers)? };
+        let layers =
+            if is_3d { edges[2].0 } else { count(self, given_layers, "the number of layers", default_layers)? };
         let samples_given = samples.map(|e| e.span);
+        let layers_given = given_layers.map(|e| e.span);
         let samples = count(self, samples, "samples", 1)?;
         let full = i64::from(edges.iter().map(|e| e.0).max().unwrap_or(1).ilog2()) + 1;
         let (mips, auto, mips_span) = match mips {
@@ -159,13 +179,6 @@ impl Lowering<'_> {
             let diagnostic = fault(Code::OUT_OF_RANGE, message, at.unwrap_or(format.span), "not possible");
             Err(traced(diagnostic, &self.scopes[s].trace))
         };
-        let most = edges.iter().map(|e| e.0).chain([layers]).max().unwrap_or(1);
-        if most > MAX_EDGE {
-            return refuse(
-                format!("a texture of {most} texels or layers in one direction is more than any device takes"),
-                size.first().map(|e| e.span),
-            );
-        }
         if samples != 1 && samples != 4 {
             return refuse(format!("samples must be 1 or 4, and is {samples}"), samples_given);
         }
@@ -174,6 +187,13 @@ impl Lowering<'_> {
         }
         if samples > 1 && (mips > 1 || layers > 1 || is_3d) {
             return refuse("a texture with 4 samples has one layer and one mip".into(), samples_given);
+        }
+        if !is_3d && layers > MAX_LAYERS {
+            return refuse(format!("a texture has at most {MAX_LAYERS} layers, not {layers}"), layers_given);
+        }
+        if dimension == ViewDimension::Cube && (layers % 6 != 0 || edges[0].0 != edges[1].0) {
+            let shape = format!("{} x {}, {}", edges[0].0, edges[1].0, amount(layers.unsigned_abs(), "layer"));
+            return refuse(format!("a cube is square and has 6 layers or a multiple, not {shape}"), layers_given);
         }
         let clamp = |n: i64| u32::try_from(n).unwrap_or(u32::MAX);
         let texture = Texture {
@@ -212,7 +232,7 @@ impl Lowering<'_> {
             (InputKind::Table, Some(InputInfo::Table { rows })) => buffer(rows.len() as u64, false),
             (InputKind::Buffer | InputKind::Counted | InputKind::Table, None) if self.stand_in => buffer(1000, counted),
             (kind, Some(_)) => {
-                let message = format!("the input `{name}` wants {}, and is fed something else", kind.name());
+                let message = format!("the input `{name}` wants {}, and is fed something else", wanted(kind));
                 return Err(Box::new(fault(Code::WRONG_KIND, message, input.name.span, "declared here")));
             }
             (_, None) => return Err(self.missing_input(0, i)),
@@ -257,7 +277,9 @@ impl Lowering<'_> {
     }
 
     /// Checks that every input of a graph instance is fed by the right kind of thing.
-    pub(super) fn check_inputs(&mut self, s: ScopeId) {
+    /// Tells whether all are.
+    pub(super) fn check_inputs(&mut self, s: ScopeId) -> bool {
+        let mut all_fit = true;
         let graph = self.scopes[s].graph.clone();
         for (i, input) in graph.inputs.iter().enumerate() {
             // Asking for it must not count as a use.
@@ -266,23 +288,29 @@ impl Lowering<'_> {
             if !used {
                 self.used.remove(&input.name.span);
             }
-            let Some(entity) = self.report(fed) else { continue };
+            let Some(entity) = self.report(fed) else {
+                all_fit = false;
+                continue;
+            };
             if self.scopes[s].parent.is_none() {
                 continue;
             }
             if matches!(entity, Entity::Absent) && !input.optional {
+                all_fit = false;
                 let diagnostic = self.absent_fed(s, i);
                 self.diagnostics.push(diagnostic);
             } else if !self.fits_input(&entity, &input.kind) {
+                all_fit = false;
                 let fed = self.what(&entity);
                 let name = &input.name.value;
-                let message = format!("the input `{name}` wants {}, and is fed {fed}", input.kind.name());
+                let message = format!("the input `{name}` wants {}, and is fed {fed}", wanted(&input.kind));
                 let bound = self.scopes[s].binds.get(name).map(|n| n.span);
                 let at = bound.or(self.scopes[s].trace.last().copied()).unwrap_or(input.name.span);
                 self.diagnostics
                     .push(fault(Code::WRONG_KIND, message, at, "fed here").see(input.name.span, "declared here"));
             }
         }
+        all_fit
     }
 
     fn absent_fed(&self, s: ScopeId, i: usize) -> Diagnostic {
@@ -308,7 +336,9 @@ impl Lowering<'_> {
             | (InputKind::Particles { .. }, Entity::Input { kind: InputKind::Particles { .. }, .. }, _) => true,
             // A camera or light that a shader wrote.
             (InputKind::Camera | InputKind::Light, Entity::Var(_), Some(ObjectKind::Buffer(b))) => !b.counted,
-            (InputKind::Texture { .. }, Entity::Var(_), Some(ObjectKind::Texture(_))) => true,
+            (InputKind::Texture { dimension }, Entity::Var(_), Some(ObjectKind::Texture(texture))) => {
+                dimension.as_ref().is_none_or(|d| has_dimension(texture, d.value))
+            }
             (InputKind::Buffer | InputKind::Table, Entity::Var(_), Some(ObjectKind::Buffer(b))) => !b.counted,
             (InputKind::Counted, Entity::Var(_), Some(ObjectKind::Buffer(b))) => b.counted,
             _ => false,
@@ -338,6 +368,36 @@ impl Lowering<'_> {
             ObjectKind::Buffer(b) if b.counted => "a counted buffer".to_owned(),
             ObjectKind::Buffer(_) => "a buffer".to_owned(),
         }
+    }
+}
+
+/// What an input wants, with its article.
+fn wanted(kind: &InputKind) -> String {
+    let dimension = match kind {
+        InputKind::Texture { dimension: Some(d) } => match d.value {
+            ViewDimension::D2 => "2D ",
+            ViewDimension::D2Array => "2D array ",
+            ViewDimension::Cube => "cube ",
+            ViewDimension::CubeArray => "cube array ",
+            ViewDimension::D3 => "3D ",
+        },
+        _ => "",
+    };
+    match kind {
+        InputKind::Particles { .. } => "Particles".to_owned(),
+        other => format!("a {dimension}{}", other.name()),
+    }
+}
+
+/// Whether a texture can be seen so.
+fn has_dimension(texture: &Texture, dimension: ViewDimension) -> bool {
+    let is_square = texture.width == texture.height;
+    match dimension {
+        ViewDimension::D3 => texture.is_3d,
+        ViewDimension::D2 => !texture.is_3d && texture.layers == 1,
+        ViewDimension::D2Array => !texture.is_3d,
+        ViewDimension::Cube => !texture.is_3d && texture.layers == 6 && is_square,
+        ViewDimension::CubeArray => !texture.is_3d && texture.layers.is_multiple_of(6) && is_square,
     }
 }
 
