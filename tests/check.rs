@@ -7,7 +7,6 @@ mod golden;
 
 mod check {
     mod cases;
-    mod ids;
     mod mutations;
     mod requests;
     mod shipped;

@@ -54,7 +54,10 @@ fn beyond_defaults(program: &Program, plan: &Plan) -> Option<Diagnostic> {
     }
     let message = format!("the graph needs more than every WebGPU device has: {}", all.join(", "));
     let diagnostic = Diagnostic::note(Code::NEEDS, message).at(program.root.span, "this graph");
-    Some(diagnostic.hint("`If(test: \"device(...)\", then: [...], else: [...])` offers another way where it is not there"))
+    Some(
+        diagnostic
+            .hint("`If(test: \"device(...)\", then: [...], else: [...])` offers another way where it is not there"),
+    )
 }
 
 /// The scene that programs are checked with: it has everything that the graph asks for, also what

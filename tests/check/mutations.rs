@@ -5,9 +5,9 @@ use std::time::{Duration, Instant};
 
 use meniscus::files::MemoryFiles;
 
+use super::all_said;
 use super::cases;
 use super::shipped::graphs;
-use super::all_said;
 use crate::golden;
 
 /// What any one check may take, in a build that is not optimized and on a busy machine.
@@ -15,9 +15,37 @@ const LONGEST: Duration = Duration::from_secs(20);
 
 /// Tokens that take the place of others.
 const OTHERS: &[&str] = &[
-    "0", "1", "-1", "65536", "99999", "4294967296", "9223372036854775807", "0.5", "1e300", "\"\"", "\"viewport\"",
-    "\"time\"", "\"color\"", "\"1 / 0\"", "\"-2147483648\"", "\"(1, 2, 3)\"", "(", ")", "[", "}", ",", "Texture",
-    "Buffer", "Counted", "D3", "Cube", "R32Uint", "Depth32Float", "Auto", "true", "None",
+    "0",
+    "1",
+    "-1",
+    "65536",
+    "99999",
+    "4294967296",
+    "9223372036854775807",
+    "0.5",
+    "1e300",
+    "\"\"",
+    "\"viewport\"",
+    "\"time\"",
+    "\"color\"",
+    "\"1 / 0\"",
+    "\"-2147483648\"",
+    "\"(1, 2, 3)\"",
+    "(",
+    ")",
+    "[",
+    "}",
+    ",",
+    "Texture",
+    "Buffer",
+    "Counted",
+    "D3",
+    "Cube",
+    "R32Uint",
+    "Depth32Float",
+    "Auto",
+    "true",
+    "None",
 ];
 
 /// Splitmix64: the same mutations in every run.
@@ -70,9 +98,7 @@ fn mutate(text: &str, random: &mut Random) -> String {
             let gone = random.below(lines.len());
             lines.iter().enumerate().filter(|(i, _)| *i != gone).map(|(_, l)| format!("{l}\n")).collect()
         }
-        1 if a.1 <= b.0 => {
-            [&text[..a.0], &text[b.0..b.1], &text[a.1..b.0], &text[a.0..a.1], &text[b.1..]].concat()
-        }
+        1 if a.1 <= b.0 => [&text[..a.0], &text[b.0..b.1], &text[a.1..b.0], &text[a.0..a.1], &text[b.1..]].concat(),
         2 => [&text[..a.0], &text[b.0..b.1], &text[a.1..]].concat(),
         _ => [&text[..a.0], OTHERS[random.below(OTHERS.len())], &text[a.1..]].concat(),
     }

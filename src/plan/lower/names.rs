@@ -122,7 +122,7 @@ impl Lowering<'_> {
             (Local::Use(_), None) => {
                 self.child(s, head, span)?;
                 Ok(Entity::Part)
-            },
+            }
             (Local::Use(_), Some(output)) => self.output(s, head, output, span),
             (Local::Param(i), None) => Ok(Entity::Scalar(self.param(s, i)?)),
             (Local::Let(i), None) => Ok(Entity::Scalar(self.let_value(s, i)?)),
