@@ -133,12 +133,15 @@ fn decode_particles(path: &Path, bytes: &[u8], estimate: bool) -> Result<(Asset,
         error.hint.iter().fold(failed, Diagnostic::hint)
     })?;
     let mut found = Diagnostics::new();
-    for note in &set.notes {
-        found.push(Diagnostic::note(Code::ASSET_NOTE, format!("`{}`: {note}", path.display())));
-    }
+    let shown = path.display();
     if set.count == 0 {
-        let empty = format!("`{}` has no particles: the picture will show none", path.display());
+        let why = if set.notes.is_empty() { "the file has no particles".into() } else { set.notes.join("; ") };
+        let empty = format!("`{shown}`: {why}: the picture will show none");
         found.push(Diagnostic::warning(Code::ASSET_NOTE, empty));
+    } else {
+        for note in &set.notes {
+            found.push(Diagnostic::note(Code::ASSET_NOTE, format!("`{shown}`: {note}")));
+        }
     }
     let wanted = estimate && set.radius.is_none() && set.count > 1;
     let estimated = if wanted { particles::estimate_radius(&set.positions()) } else { None };

@@ -124,13 +124,16 @@ impl Loader<'_> {
         match (&self.job.graph, &scene.graph) {
             (Some(name), _) => self.program(&name.clone(), None),
             (None, Some(name)) => {
-                let found = files::find(self.files, Kind::Graph, &name.value, Some(&scene.path));
-                if let Err(missing) = found {
+                // A scene may bear the name of its graph, and does not mean itself.
+                let folder = scene.path.parent();
+                let is_itself = folder.is_some_and(|f| files::normalize(&f.join(&name.value)) == scene.path);
+                let beside = folder.filter(|_| is_itself).unwrap_or(&scene.path);
+                if let Err(missing) = files::find(self.files, Kind::Graph, &name.value, Some(beside)) {
                     self.read.extend(missing.tried.iter().cloned());
                     self.diagnostics.push(missing_file(&name.value, Kind::Graph, &missing, Some(name.span)));
                     return None;
                 }
-                self.program(&name.value.clone(), Some(&scene.path))
+                self.program(&name.value, Some(beside))
             }
             (None, None) => {
                 let lacks = Diagnostic::error(Code::MISSING_FIELD, "`Scene` lacks the field `graph`")

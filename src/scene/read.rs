@@ -43,12 +43,6 @@ pub fn read(path: &Path, bytes: &[u8], sources: &mut Sources, diagnostics: &mut 
     let mut reader = Reader { decoder: Decoder { diagnostics } };
     let tagged = reader.root(&node)?;
     let fields = reader.decoder.body_fields(tagged, "`Scene`", FIELDS)?;
-    let mut textures = reader.items(&fields, "textures", Reader::file_name);
-    if let Some((name, node)) = fields.entry("environment")
-        && let Some(file) = reader.file_name(node, "`environment`")
-    {
-        textures.push(Item { name: name.clone(), value: file, span: node.span });
-    }
     let scene = Scene {
         path: path.to_owned(),
         file,
@@ -58,11 +52,11 @@ pub fn read(path: &Path, bytes: &[u8], sources: &mut Sources, diagnostics: &mut 
         camera: fields.get("camera").and_then(|n| reader.camera(n)),
         lights: reader.items(&fields, "lights", Reader::light),
         particles: reader.items(&fields, "particles", Reader::particles),
+        textures: reader.textures(&fields),
         tables: reader.items(&fields, "tables", Reader::table),
         params: reader.items(&fields, "params", Reader::value),
         present: reader.items(&fields, "present", Reader::value),
         size: fields.get("size").and_then(|n| reader.size(n)),
-        textures,
     };
     reader.same_names(&scene);
     Some(scene)
@@ -99,6 +93,17 @@ impl Reader<'_> {
             }
         }
         items
+    }
+
+    /// Pictures; the environment is one of them.
+    fn textures(&mut self, fields: &Fields<'_>) -> Vec<Item<Sp<String>>> {
+        let mut textures = self.items(fields, "textures", Reader::file_name);
+        if let Some((name, node)) = fields.entry("environment")
+            && let Some(file) = self.file_name(node, "`environment`")
+        {
+            textures.push(Item { name: name.clone(), value: file, span: node.span });
+        }
+        textures
     }
 
     fn camera(&mut self, node: &Node) -> Option<Sp<Camera>> {
@@ -215,7 +220,8 @@ impl Reader<'_> {
     fn file_name(&mut self, node: &Node, what: &str) -> Option<Sp<String>> {
         let text = self.decoder.text(node, what)?;
         if text.value.trim().is_empty() {
-            self.decoder.wrong(node, what, "the name of a file");
+            let message = format!("{what}: expected the name of a file, found an empty string");
+            self.decoder.push(Diagnostic::error(Code::WRONG_VALUE, message).at(node.span, "this names nothing"));
             return None;
         }
         Some(text)
@@ -248,7 +254,10 @@ impl Reader<'_> {
         let items = scene.items();
         for (at, (kind, name)) in items.iter().enumerate() {
             if let Some((other, first)) = items[..at].iter().find(|(_, n)| n.value == name.value) {
-                let message = format!("`{}` names both {} and {}", name.value, article(other), article(kind));
+                let message = match kind {
+                    kind if kind == other => format!("`{}` is given twice", name.value),
+                    _ => format!("`{}` names both {} and {}", name.value, article(other), article(kind)),
+                };
                 let twice = Diagnostic::error(Code::DUPLICATE, message)
                     .at(name.span, "the second time")
                     .see(first.span, "the first time");

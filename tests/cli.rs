@@ -1,0 +1,367 @@
+//! The program as people run it: exit codes, what is said, what is written, and what is not.
+
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+#[path = "support/project.rs"]
+mod project;
+
+use project::{Project, Run, has_adapter, shared};
+
+/// A run that must fail so, leave no file behind, and say these words on the error stream.
+fn refused(project: &Project, args: &[&str], code: i32, words: &[&str]) {
+    let before = project.files();
+    let run = project.run(args);
+    assert_eq!(run.code, code, "{args:?} said:\n{}", run.stderr);
+    for word in words {
+        assert!(run.stderr.contains(word), "{args:?} does not say {word:?} but:\n{}", run.stderr);
+    }
+    assert_eq!(run.stdout, "", "{args:?}");
+    assert!(!run.stderr.contains("panicked"), "{args:?} said:\n{}", run.stderr);
+    assert_eq!(project.files(), before, "{args:?} left something behind");
+}
+
+fn good(run: Run) -> Run {
+    assert_eq!(run.code, 0, "{}{}", run.stderr, run.stdout);
+    run
+}
+
+#[test]
+fn wrong_usage_ends_with_2() {
+    let project = Project::new();
+    let scene = "scenes/dots.ron";
+    refused(&project, &[], 2, &["Usage"]);
+    refused(&project, &["paint"], 2, &["unrecognized subcommand 'paint'"]);
+    refused(&project, &["render"], 2, &["--output <FILE>"]);
+    refused(&project, &["render", scene, "-o", "a.gif"], 2, &["`a.gif`: pictures are written as .png or .exr"]);
+    refused(&project, &["render", scene, "-o", "no/a.png"], 2, &["there is no folder `no`", "mkdir -p no"]);
+    refused(&project, &["render", scene, "-o", "scenes"], 2, &[".png or .exr"]);
+    for (flag, value, words) in [
+        ("--size", "0x0", "at least 1 pixel"),
+        ("--size", "100000x1", "at most 32768"),
+        ("--size", "big", "expected WIDTHxHEIGHT"),
+        ("--radius", "0", "above 0"),
+        ("--radius", "NaN", "above 0"),
+        ("--radius", "-1", "above 0"),
+        ("--fov", "180", "below 180"),
+        ("--eye", "1,2", "three numbers"),
+        ("--target", "a,b,c", "three numbers"),
+        ("--time", "-1", "not below 0"),
+        ("--frames", "9..1", "comes after the last"),
+        ("--set", "size", "`=` between"),
+        ("--backend", "glide", "possible values"),
+        ("--dump", "picture=a.txt", "textures are written as .png or .exr"),
+    ] {
+        refused(&project, &["render", scene, "-o", "a.png", flag, value], 2, &[words]);
+    }
+    refused(&project, &["render", scene, "-o", "a.png", "--frame", "1", "--time", "1"], 2, &["cannot be used with"]);
+}
+
+#[test]
+fn unreadable_input_ends_with_2_and_names_file_and_place() {
+    let project = Project::new();
+    project.write("note.txt", "hello");
+    project.write("empty.ply", "");
+    project.write("cut.csv", "x,y,z\n1,2,3\n1,2\n");
+    project.write("lying.ply", LYING_PLY);
+    project.write("alike.csv", "x,y,z\n1,1,1\n1,1,1\n1,1,1\n");
+    project.write("one.csv", "x,y,z\n1,1,1\n");
+    for (file, words) in [
+        ("nothing.vtk", vec!["there is no file `nothing.vtk`"]),
+        ("scenes/nothing.ron", vec!["there is no file `scenes/nothing.ron`"]),
+        ("scenes", vec!["`scenes` is a folder"]),
+        ("note.txt", vec!["`note.txt` is neither a scene (.ron) nor a particle file", ".bgeo"]),
+        ("empty.ply", vec!["`empty.ply`: byte 0: the file is empty"]),
+        ("cut.csv", vec!["`cut.csv`: line 3"]),
+        ("lying.ply", vec!["`lying.ply`: "]),
+        ("alike.csv", vec!["`alike.csv` gives no radius", "all particles are in one place", "--radius METRES"]),
+        ("one.csv", vec!["there is one particle only", "--radius METRES"]),
+    ] {
+        refused(&project, &["render", file, "-o", "a.png"], 2, &words);
+    }
+    let asset = ["render", "scenes/dots.ron", "-o", "a.png", "--particles"];
+    refused(&project, &[&asset[..], &["gone.ply"]].concat(), 2, &["there is no file `gone.ply`"]);
+    refused(&project, &[&asset[..], &["empty.ply"]].concat(), 2, &["`empty.ply`: byte 0"]);
+}
+
+/// A header that promises four billion particles.
+const LYING_PLY: &str = "ply\nformat binary_little_endian 1.0\nelement vertex 4000000000\nproperty float x\n\
+    property float y\nproperty float z\nend_header\nabcdefghijkl";
+
+#[test]
+fn mistakes_in_scenes_and_graphs_end_with_1_and_point() {
+    let project = Project::new();
+    let render = ["render", "scenes/dots.ron", "-o", "a.png"];
+    project.edit("scenes/dots.ron", "assets/dots.csv", "assets/dot.csv");
+    refused(&project, &render, 1, &["there is no file `assets/dot.csv`", "scenes/dots.ron:14"]);
+    project.edit("scenes/dots.ron", "assets/dot.csv", "assets/dots.csv");
+    project.edit("scenes/dots.ron", "\"size\": 1.5", "\"siz\": 1.5");
+    refused(&project, &render, 1, &["there is no parameter `siz`", "did you mean `size`?", "scenes/dots.ron:17"]);
+    project.edit("scenes/dots.ron", "\"siz\": 1.5", "\"size\": 99.0");
+    refused(
+        &project,
+        &render,
+        1,
+        &["99.0 is above the greatest value, 10", "scenes/dots.ron:17", "graphs/dots.ron:14"],
+    );
+    project.edit("scenes/dots.ron", "\"size\": 99.0", "\"size\": 1.0");
+    project.edit("scenes/dots.ron", "\"sun\": Light", "\"moon\": Light");
+    let missing =
+        ["nothing feeds the input `sun`", "the scene has no `sun`", "graphs/dots.ron:10", "scenes/dots.ron:3"];
+    refused(&project, &render, 1, &missing);
+    project.edit("scenes/dots.ron", "\"moon\": Light", "\"sun\": Light");
+    project.edit("graphs/dots.ron", "\"picture\", clear", "\"pictur\", clear");
+    refused(&project, &render, 1, &["`pictur`", "did you mean `picture`?", "graphs/dots.ron"]);
+    project.edit("graphs/dots.ron", "\"pictur\", clear", "\"picture\", clear");
+    project.edit("shaders/dots/discs.wgsl", "color * light", "colour * light");
+    refused(&project, &render, 1, &["colour", "shaders/dots/discs.wgsl:44"]);
+}
+
+#[test]
+fn parameters_on_the_command_line_are_checked_like_those_of_scenes() {
+    let project = Project::new();
+    let render = ["render", "scenes/dots.ron", "-o", "a.png", "--set"];
+    let set = |value| [&render[..], &[value]].concat();
+    refused(&project, &set("siz=1"), 2, &["there is no parameter `siz`", "did you mean `size`?"]);
+    refused(
+        &project,
+        &set("size=big"),
+        2,
+        &["parameter `size`: expected a finite number, found `big`", "graphs/dots.ron:14"],
+    );
+    refused(&project, &set("size=11"), 2, &["11.0 is above the greatest value, 10"]);
+    refused(&project, &set("color=1,2"), 2, &["expected a value for Color"]);
+    refused(&project, &set("present.tone=ages"), 2, &["did you mean `agx`?"]);
+}
+
+#[test]
+fn check_tells_findings_as_text_and_as_json() {
+    let project = Project::new();
+    let all = ["graphs/dots.ron", "scenes/dots.ron", "shaders/dots/discs.wgsl"];
+    let fine = good(project.run(&[&["check"], &all[..]].concat()));
+    assert_eq!((fine.stderr.as_str(), fine.stdout.as_str()), ("3 files checked: nothing wrong\n", ""));
+    project.edit("graphs/dots.ron", "\"picture\", clear", "\"pictur\", clear");
+    refused(&project, &["check", "graphs/dots.ron"], 1, &["error[", "graphs/dots.ron:29", "1 error"]);
+    let json = project.run(&["check", "--format", "json", "graphs/dots.ron"]);
+    assert_eq!((json.code, json.stderr.as_str()), (1, ""));
+    let found: serde_json::Value = serde_json::from_str(&json.stdout).unwrap();
+    assert_eq!(found[0]["severity"], "error");
+    assert_eq!(
+        (&found[0]["labels"][0]["file"], &found[0]["labels"][0]["line"]),
+        (&"graphs/dots.ron".into(), &29.into())
+    );
+    refused(&project, &["check", "graphs"], 2, &["`graphs` is a folder"]);
+    refused(&project, &["check", "graphs/none.ron"], 2, &["there is no graph `graphs/none.ron`"]);
+    refused(&project, &["check", "scenes/assets/dots.csv"], 2, &["is no graph, scene (.ron) or shader (.wgsl)"]);
+}
+
+#[test]
+fn warnings_are_findings_only_if_denied() {
+    let project = Project::new();
+    project.edit("graphs/dots.ron", "\"disc_m\"", "\"unused_m\": \"2 * size\", \"disc_m\"");
+    let warned = project.run(&["check", "graphs/dots.ron"]);
+    assert_eq!(warned.code, 0);
+    assert!(warned.stderr.contains("warning[unused]") && warned.stderr.contains("unused_m"), "{}", warned.stderr);
+    refused(&project, &["check", "--deny-warnings", "graphs/dots.ron"], 1, &["warning[unused]", "1 warning"]);
+    assert_eq!(good(project.run(&["check", "--format", "json", "graphs/dots.ron"])).stderr, "");
+}
+
+#[test]
+fn explain_knows_every_id_that_messages_bear() {
+    let project = Project::empty();
+    let list = good(project.run(&["explain"])).stdout;
+    assert!(list.lines().any(|id| id == "asset"));
+    for id in list.lines() {
+        assert!(good(project.run(&["explain", id])).stdout.len() > id.len() + 40, "{id}");
+    }
+    assert_eq!(good(project.run(&["explain", "error[asset]"])).stdout, good(project.run(&["explain", "asset"])).stdout);
+    refused(&project, &["explain", "aset"], 2, &["there is no diagnostic `aset`", "did you mean `asset`?"]);
+}
+
+#[test]
+fn plan_prints_what_would_run() {
+    let project = Project::new();
+    let plan = good(project.run(&["plan", "graphs/dots.ron", "--size", "320x200"]));
+    assert!(plan.stdout.contains("320 x 200") && plan.stdout.contains("discs"), "{}", plan.stdout);
+    let scene = good(project.run(&["plan", "scenes/dots.ron"]));
+    assert!(scene.stdout.contains("800 x 600"), "{}", scene.stdout);
+    refused(&project, &["plan", "shaders/dots/discs.wgsl"], 2, &["is a shader"]);
+    refused(&project, &["plan", "graphs/dots.ron", "--set", "siz=1"], 2, &["did you mean `size`?"]);
+}
+
+#[test]
+fn new_makes_a_project_and_never_overwrites() {
+    let project = Project::new();
+    let files = ["graphs/dots.ron", "scenes/assets/dots.csv", "scenes/dots.ron", "shaders/dots/discs.wgsl"];
+    assert_eq!(project.files(), files);
+    project.write("graphs/dots.ron", "mine");
+    refused(&project, &["new", "dots"], 2, &["`graphs/dots.ron` is there already, and nothing was written"]);
+    assert_eq!(project.text("graphs/dots.ron"), "mine");
+    refused(&project, &["new", "../a"], 2, &["small letters"]);
+}
+
+#[test]
+fn info_lists_adapters_and_what_graphs_need() {
+    let project = Project::empty();
+    let info = project.run(&["info"]);
+    assert!(info.stdout.contains("shipped graphs"), "{}", info.stdout);
+    assert!(!info.stdout.contains("cannot be planned"), "{}", info.stdout);
+    let json: serde_json::Value = serde_json::from_str(&project.run(&["info", "--format", "json"]).stdout).unwrap();
+    let adapters = json["adapters"].as_array().unwrap();
+    assert_eq!(info.code, if adapters.is_empty() { 3 } else { 0 });
+}
+
+/// The picture's pixels, which must not all be alike.
+fn picture(project: &Project, name: &str) -> image::RgbaImage {
+    let image = image::open(project.path(name)).unwrap().into_rgba8();
+    let first = *image.get_pixel(0, 0);
+    assert!(image.pixels().any(|pixel| *pixel != first), "{name} is blank");
+    image
+}
+
+#[test]
+fn a_scene_becomes_a_picture() {
+    if !has_adapter() {
+        return;
+    }
+    let project = Project::new();
+    good(project.run(&["render", "scenes/dots.ron", "-o", "a.png", "--size", "160x120"]));
+    assert_eq!(picture(&project, "a.png").dimensions(), (160, 120));
+    good(project.run(&["render", "scenes/dots.ron", "-o", "b.png", "--size", "160x120"]));
+    assert_eq!(std::fs::read(project.path("a.png")).unwrap(), std::fs::read(project.path("b.png")).unwrap());
+    good(project.run(&[
+        "render",
+        "scenes/dots.ron",
+        "-o",
+        "c.png",
+        "--size",
+        "160x120",
+        "--eye",
+        "3,1,0",
+        "--fov",
+        "30",
+    ]));
+    assert_ne!(picture(&project, "a.png"), picture(&project, "c.png"));
+    good(project.run(&["render", "scenes/dots.ron", "-o", "d.png", "--size", "160x120", "--set", "size=4"]));
+    assert_ne!(picture(&project, "a.png"), picture(&project, "d.png"));
+    assert_eq!(project.files().iter().filter(|f| f.ends_with(".part")).count(), 0);
+}
+
+#[test]
+fn transparent_pictures_have_coverage_and_exr_is_linear() {
+    if !has_adapter() {
+        return;
+    }
+    let project = Project::new();
+    let args = ["render", "scenes/dots.ron", "--size", "160x120", "-o"];
+    good(project.run(&[&args[..], &["a.png", "--transparent"]].concat()));
+    let image = picture(&project, "a.png");
+    let count = |alpha| image.pixels().filter(|p| p[3] == alpha).count();
+    assert!(count(0) > 1000 && count(255) > 100, "{} clear, {} covered", count(0), count(255));
+    good(project.run(&[&args[..], &["a.exr"]].concat()));
+    let light = image::open(project.path("a.exr")).unwrap().into_rgba32f();
+    let pairs = light.pixels().zip(image.pixels());
+    assert!(pairs.clone().all(|(light, shown)| (light[3] > 0.5) == (shown[3] > 127)));
+    let blue = pairs.filter(|(light, _)| light[3] == 1.0).map(|(light, _)| light[2] / light[0]);
+    let expected = 0.6 / 0.1;
+    assert!(blue.clone().count() > 100);
+    assert!(blue.into_iter().all(|ratio| (ratio - expected).abs() < 0.05), "the graph's own color, before any curve");
+}
+
+#[test]
+fn sequences_are_numbered_and_dumps_hold_what_was_asked_for() {
+    if !has_adapter() {
+        return;
+    }
+    let project = Project::new();
+    let args = ["render", "scenes/dots.ron", "--size", "64x48"];
+    good(project.run(&[&args[..], &["-o", "f.png", "--frames", "1..3"]].concat()));
+    let pictures: Vec<_> = project.files().into_iter().filter(|f| f.ends_with(".png")).collect();
+    assert_eq!(pictures, ["f_0001.png", "f_0002.png", "f_0003.png"]);
+    let dumps = ["--dump", "depth=z.exr", "--dump", "particles.position=p.ply", "--dump", "picture=p.png"];
+    good(project.run(&[&args[..], &["-o", "a.png"], &dumps[..]].concat()));
+    let depth = image::open(project.path("z.exr")).unwrap().into_rgba32f();
+    assert!(depth.pixels().any(|p| p[0] == 0.0) && depth.pixels().any(|p| p[0] > 0.0 && p[0] < 1.0));
+    let bytes = std::fs::read(project.path("p.ply")).unwrap();
+    let set = meniscus::scene::particles::read(std::path::Path::new("p.ply"), &bytes).unwrap();
+    assert_eq!((set.count, set.positions()[0]), (200, [0.5, 0.0, 0.0]));
+    picture(&project, "p.png");
+    let wrong = [&args[..], &["-o", "b.png", "--dump", "dept=z2.exr"]].concat();
+    let run = project.run(&wrong);
+    assert!(run.code != 0 && run.stderr.contains("did you mean `depth`?"), "{}", run.stderr);
+    assert!(!project.path("z2.exr").exists());
+}
+
+#[test]
+fn no_particles_are_a_warning_and_a_picture() {
+    if !has_adapter() {
+        return;
+    }
+    let project = Project::new();
+    project.write("none.csv", "x,y,z\n");
+    let args = ["-o", "a.png", "--size", "64x48"];
+    let run = good(project.run(&[&["render", "scenes/dots.ron", "--particles", "none.csv"], &args[..]].concat()));
+    assert!(run.stderr.contains("warning[asset-note]") && run.stderr.contains("none.csv"), "{}", run.stderr);
+    picture(&project, "a.png");
+    good(project.run(&[&["render", "none.csv"], &args[..]].concat()));
+    picture(&project, "a.png");
+}
+
+#[test]
+fn particles_by_themselves_are_framed_and_their_radius_is_told() {
+    if !has_adapter() {
+        return;
+    }
+    let project = Project::new();
+    let run = good(project.run(&["render", "scenes/assets/dots.csv", "-o", "a.png", "--size", "160x120"]));
+    assert!(run.stderr.contains("is estimated from the spacing"), "{}", run.stderr);
+    let framed = picture(&project, "a.png");
+    good(project.run(&["render", "scenes/assets/dots.csv", "-o", "b.png", "--size", "160x120", "--radius", "0.05"]));
+    assert_ne!(framed, picture(&project, "b.png"));
+    good(project.run(&["render", "scenes/assets/dots.csv", "-o", "c.png", "--size", "160x120", "--graph", "dots.ron"]));
+    assert_ne!(framed, picture(&project, "c.png"));
+}
+
+#[test]
+fn a_third_partys_particles_become_a_picture() {
+    let Some(path) = shared("splashsurf/double_dam_break_frame_26_4732_particles.vtk") else { return };
+    if !has_adapter() {
+        return;
+    }
+    let project = Project::empty();
+    let path = path.to_str().unwrap();
+    let run =
+        good(project.run(&["render", path, "-o", "a.png", "--size", "160x120", "--radius", "0.025", "--timings"]));
+    assert!(run.stderr.contains("GPU ms") && !run.stderr.contains("estimated"), "{}", run.stderr);
+    picture(&project, "a.png");
+}
+
+#[test]
+fn a_size_beyond_the_device_is_wrong_usage() {
+    if !has_adapter() {
+        return;
+    }
+    let project = Project::new();
+    refused(
+        &project,
+        &["render", "scenes/dots.ron", "-o", "a.png", "--size", "32768x8"],
+        2,
+        &["than this device can do"],
+    );
+}
+
+#[test]
+fn bench_measures_passes_and_memory() {
+    if !has_adapter() {
+        return;
+    }
+    let project = Project::new();
+    let args = ["bench", "scenes/dots.ron", "--size", "64x48", "--frames", "3", "--format"];
+    let json = good(project.run(&[&args[..], &["json"]].concat())).stdout;
+    let json: serde_json::Value = serde_json::from_str(&json).unwrap();
+    assert_eq!((&json["frames"], &json["passes"][0]["pass"]), (&3.into(), &"discs".into()));
+    assert!(json["encode"]["median_ms"].as_f64().unwrap() > 0.0);
+    assert!(json["memory"]["held_bytes"].as_u64().unwrap() > 64 * 48 * 8);
+    let csv = good(project.run(&[&args[..], &["csv"]].concat())).stdout;
+    assert!(csv.starts_with("what,median_ms,p99_ms\ndiscs,"), "{csv}");
+    assert!(good(project.run(&[&args[..], &["table"]].concat())).stdout.contains("all passes"));
+}
