@@ -92,28 +92,27 @@ fn mistakes_in_scenes_and_graphs_end_with_1_and_point() {
     let project = Project::new();
     let render = ["render", "scenes/dots.ron", "-o", "a.png"];
     project.edit("scenes/dots.ron", "assets/dots.csv", "assets/dot.csv");
-    refused(&project, &render, 1, &["there is no file `assets/dot.csv`", "scenes/dots.ron:14"]);
+    refused(&project, &render, 1, &["there is no file `assets/dot.csv`", "scenes/dots.ron:13"]);
     project.edit("scenes/dots.ron", "assets/dot.csv", "assets/dots.csv");
     project.edit("scenes/dots.ron", "\"size\": 1.5", "\"siz\": 1.5");
-    refused(&project, &render, 1, &["there is no parameter `siz`", "did you mean `size`?", "scenes/dots.ron:17"]);
+    refused(&project, &render, 1, &["there is no parameter `siz`", "did you mean `size`?", "scenes/dots.ron:16"]);
     project.edit("scenes/dots.ron", "\"siz\": 1.5", "\"size\": 99.0");
     refused(
         &project,
         &render,
         1,
-        &["99.0 is above the greatest value, 10", "scenes/dots.ron:17", "graphs/dots.ron:14"],
+        &["99.0 is above the greatest value, 10", "scenes/dots.ron:16", "graphs/dots.ron:13"],
     );
     project.edit("scenes/dots.ron", "\"size\": 99.0", "\"size\": 1.0");
     project.edit("scenes/dots.ron", "\"sun\": Light", "\"moon\": Light");
-    let missing =
-        ["nothing feeds the input `sun`", "the scene has no `sun`", "graphs/dots.ron:10", "scenes/dots.ron:3"];
+    let missing = ["nothing feeds the input `sun`", "the scene has no `sun`", "graphs/dots.ron:9", "scenes/dots.ron:3"];
     refused(&project, &render, 1, &missing);
     project.edit("scenes/dots.ron", "\"moon\": Light", "\"sun\": Light");
     project.edit("graphs/dots.ron", "\"picture\", clear", "\"pictur\", clear");
     refused(&project, &render, 1, &["`pictur`", "did you mean `picture`?", "graphs/dots.ron"]);
     project.edit("graphs/dots.ron", "\"pictur\", clear", "\"picture\", clear");
     project.edit("shaders/dots/discs.wgsl", "color * light", "colour * light");
-    refused(&project, &render, 1, &["colour", "shaders/dots/discs.wgsl:44"]);
+    refused(&project, &render, 1, &["colour", "shaders/dots/discs.wgsl:42"]);
 }
 
 #[test]
@@ -126,7 +125,7 @@ fn parameters_on_the_command_line_are_checked_like_those_of_scenes() {
         &project,
         &set("size=big"),
         2,
-        &["parameter `size`: expected a finite number, found `big`", "graphs/dots.ron:14"],
+        &["parameter `size`: expected a finite number, found `big`", "graphs/dots.ron:13"],
     );
     refused(&project, &set("size=11"), 2, &["11.0 is above the greatest value, 10"]);
     refused(&project, &set("color=1,2"), 2, &["expected a value for Color"]);
@@ -140,14 +139,14 @@ fn check_tells_findings_as_text_and_as_json() {
     let fine = good(project.run(&[&["check"], &all[..]].concat()));
     assert_eq!((fine.stderr.as_str(), fine.stdout.as_str()), ("3 files checked: nothing wrong\n", ""));
     project.edit("graphs/dots.ron", "\"picture\", clear", "\"pictur\", clear");
-    refused(&project, &["check", "graphs/dots.ron"], 1, &["error[", "graphs/dots.ron:29", "1 error"]);
+    refused(&project, &["check", "graphs/dots.ron"], 1, &["error[", "graphs/dots.ron:31", "1 error"]);
     let json = project.run(&["check", "--format", "json", "graphs/dots.ron"]);
     assert_eq!((json.code, json.stderr.as_str()), (1, ""));
     let found: serde_json::Value = serde_json::from_str(&json.stdout).unwrap();
     assert_eq!(found[0]["severity"], "error");
     assert_eq!(
         (&found[0]["labels"][0]["file"], &found[0]["labels"][0]["line"]),
-        (&"graphs/dots.ron".into(), &29.into())
+        (&"graphs/dots.ron".into(), &31.into())
     );
     refused(&project, &["check", "graphs"], 2, &["`graphs` is a folder"]);
     refused(&project, &["check", "graphs/none.ron"], 2, &["there is no graph `graphs/none.ron`"]);

@@ -33,7 +33,8 @@ pub(super) struct ParticleFile {
     /// Absent: for the graph's only input of particles.
     pub name: Option<String>,
     pub path: PathBuf,
-    pub pending: Pending,
+    /// Absent if there is no such file, which was reported.
+    pub pending: Option<Pending>,
     /// Metres, where somebody says.
     pub radius_m: Option<f64>,
 }
@@ -42,7 +43,7 @@ pub(super) struct ParticleFile {
 #[derive(Debug)]
 pub(super) struct Offer {
     pub particles: Vec<ParticleFile>,
-    pub images: Vec<(String, Pending)>,
+    pub images: Vec<(String, Option<Pending>)>,
 }
 
 /// Decoded files by the names of the inputs that they are for.
@@ -61,7 +62,7 @@ impl Offer {
         for file in self.particles {
             let ParticleFile { name, path, pending, radius_m: said } = file;
             let name = name.map_or_else(|| only_particles(graph), Ok);
-            let asset = cache.finish(pending, diagnostics);
+            let asset = pending.and_then(|pending| cache.finish(pending, diagnostics));
             let name = match name {
                 Ok(name) => name,
                 Err(error) => {
@@ -82,7 +83,7 @@ impl Offer {
             }
         }
         for (name, pending) in self.images {
-            match cache.finish(pending, diagnostics) {
+            match pending.and_then(|pending| cache.finish(pending, diagnostics)) {
                 Some(Asset::Image(image)) => _ = decoded.images.insert(name, image),
                 _ => decoded.failed.push(name),
             }

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use glam::DVec3;
 use wgpu_types::{Features, Limits};
 
-use super::assets::{AssetKind, Cache};
+use super::assets::{AssetKind, Cache, Pending};
 use super::inputs::{self, Input, Offer, ParticleFile};
 use super::params::{self, Given, Raw};
 use super::source;
@@ -164,23 +164,21 @@ impl Loader<'_> {
             // The one file on the command line takes the place of the scene's one.
             let same = replaced.as_deref().is_none_or(|name| name == item.name.value);
             let is_replaced = file.is_some() && same && (replaced.is_some() || scene.particles.len() == 1);
-            if !is_replaced
-                && let Some(bytes) = self.asset(&item.value.file.value, Some(&scene.path), item.value.file.span)
-            {
-                let said = self.job.radius_m.or(item.value.radius_m.as_ref().map(|r| r.value));
-                let at = Some(item.value.file.span);
-                list.push(self.particle_file(Some(item.name.value.clone()), bytes.0, bytes.1, said, at));
+            if is_replaced {
+                continue;
             }
+            let name = &item.value.file;
+            let (path, bytes) = self.asset(&name.value, &scene.path, name.span);
+            let said = self.job.radius_m.or(item.value.radius_m.as_ref().map(|r| r.value));
+            list.push(self.particle_file(Some(item.name.value.clone()), path, bytes, said, Some(name.span)));
         }
         if let Some(bytes) = given {
-            list.push(self.particle_file(None, self.job.source.clone(), bytes, self.job.radius_m, None));
+            list.push(self.particle_file(None, self.job.source.clone(), Some(bytes), self.job.radius_m, None));
         }
         if let Some(path) = file.map(PathBuf::from) {
             self.read.push(path.clone());
-            match source::named(self.files, &path) {
-                Ok(bytes) => list.push(self.particle_file(replaced, path, bytes, self.job.radius_m, None)),
-                Err(error) => self.diagnostics.push(error),
-            }
+            let bytes = source::named(self.files, &path).map_err(|error| self.diagnostics.push(error)).ok();
+            list.push(self.particle_file(replaced, path, bytes, self.job.radius_m, None));
         }
         list
     }
@@ -189,36 +187,36 @@ impl Loader<'_> {
         &self,
         name: Option<String>,
         path: PathBuf,
-        bytes: Arc<[u8]>,
+        bytes: Option<Arc<[u8]>>,
         radius_m: Option<f64>,
         at: Option<Span>,
     ) -> ParticleFile {
         let kind = AssetKind::Particles { estimate: radius_m.is_none() };
-        let pending = self.cache.begin(&path, bytes, kind, at);
+        let pending = bytes.map(|bytes| self.cache.begin(&path, bytes, kind, at));
         ParticleFile { name, path, pending, radius_m }
     }
 
-    fn images(&mut self, scene: &Scene) -> Vec<(String, super::assets::Pending)> {
+    fn images(&mut self, scene: &Scene) -> Vec<(String, Option<Pending>)> {
         let mut list = Vec::new();
         for Item { name, value: file, .. } in &scene.textures {
-            if let Some((path, bytes)) = self.asset(&file.value, Some(&scene.path), file.span) {
-                list.push((name.value.clone(), self.cache.begin(&path, bytes, AssetKind::Image, Some(file.span))));
-            }
+            let (path, bytes) = self.asset(&file.value, &scene.path, file.span);
+            let begin = |bytes| self.cache.begin(&path, bytes, AssetKind::Image, Some(file.span));
+            list.push((name.value.clone(), bytes.map(begin)));
         }
         list
     }
 
-    /// A file that a scene names.
-    fn asset(&mut self, name: &str, beside: Option<&Path>, at: Span) -> Option<(PathBuf, Arc<[u8]>)> {
-        match files::find(self.files, Kind::Asset, name, beside) {
+    /// A file that a scene names: its path, and its bytes if it is there.
+    fn asset(&mut self, name: &str, scene: &Path, at: Span) -> (PathBuf, Option<Arc<[u8]>>) {
+        match files::find(self.files, Kind::Asset, name, Some(scene)) {
             Ok(found) => {
                 self.read.push(found.path.clone());
-                Some((found.path, found.bytes))
+                (found.path, Some(found.bytes))
             }
             Err(missing) => {
                 self.read.extend(missing.tried.iter().cloned());
                 self.diagnostics.push(missing_file(name, Kind::Asset, &missing, Some(at)));
-                None
+                (PathBuf::from(name), None)
             }
         }
     }
