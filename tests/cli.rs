@@ -129,7 +129,7 @@ fn parameters_on_the_command_line_are_checked_like_those_of_scenes() {
     );
     refused(&project, &set("size=11"), 2, &["11.0 is above the greatest value, 10"]);
     refused(&project, &set("color=1,2"), 2, &["expected a value for Color"]);
-    refused(&project, &set("present.tone=ages"), 2, &["did you mean `agx`?"]);
+    refused(&project, &set("present.tone=ages"), 2, &["did you mean `aces`?"]);
 }
 
 #[test]
