@@ -183,6 +183,9 @@ fn plan_prints_what_would_run() {
     assert!(plan.stdout.contains("320 x 200") && plan.stdout.contains("discs"), "{}", plan.stdout);
     let scene = good(project.run(&["plan", "scenes/dots.ron"]));
     assert!(scene.stdout.contains("800 x 600"), "{}", scene.stdout);
+    let format = |format| good(project.run(&["plan", "graphs/dots.ron", "--format", format])).stdout;
+    assert!(serde_json::from_str::<serde_json::Value>(&format("json")).unwrap().is_object());
+    assert!(format("dot").starts_with("digraph") && format("svg").starts_with("<svg"));
     refused(&project, &["plan", "shaders/dots/discs.wgsl"], 2, &["is a shader"]);
     refused(&project, &["plan", "graphs/dots.ron", "--set", "siz=1"], 2, &["did you mean `size`?"]);
 }

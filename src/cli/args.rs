@@ -154,6 +154,10 @@ pub struct PlanArgs {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum PlanFormat {
     Text,
+    Json,
+    /// For Graphviz
+    Dot,
+    Svg,
 }
 
 #[derive(Args, Clone, Debug)]

@@ -20,6 +20,9 @@ pub fn run(args: &PlanArgs) -> Exit {
             let exit = report(&found, &sources);
             let text = match args.format {
                 PlanFormat::Text => printed::text(&plan),
+                PlanFormat::Json => printed::json(&plan),
+                PlanFormat::Dot => printed::dot(&plan),
+                PlanFormat::Svg => printed::svg(&plan),
             };
             match print(&text) {
                 Exit::Done => exit,
