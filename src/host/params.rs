@@ -209,7 +209,7 @@ mod tests {
         let span = Span::new(FileId(0), 0, 0);
         let at = |value| Sp { value, span };
         Param {
-            name: at("p".to_owned()),
+            name: Sp { value: "p".to_owned(), span },
             kind,
             default: None,
             min: min.map(at),
