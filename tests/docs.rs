@@ -175,3 +175,40 @@ fn every_link_leads_somewhere() {
     assert!(dead.is_empty(), "{}", dead.join("\n"));
     assert!(seen >= 20, "only {seen} links were found");
 }
+
+/// Names that swap in a step stand for the newest after it, also when the step is the first to use them.
+#[test]
+fn state_of_the_tour_turns_with_each_step() {
+    use meniscus::plan::model::ObjectRef;
+    let path = root().join("docs/tour/heat.ron");
+    let program = program::load(&DiskFiles, &mut Sources::new(), path.to_str().unwrap(), None).program.unwrap();
+    let plan = meniscus::plan::instantiate(&program, &check::stand_in(&program)).unwrap();
+    assert_eq!(plan.rings.len(), 1);
+    assert_eq!(plan.rings[0].turn, 1, "one swap a step");
+    let read = plan.passes.last().unwrap().accesses.iter().find(|a| a.read).unwrap().object;
+    assert_eq!(read, ObjectRef::Ring { ring: 0, index: 0 }, "the first name is the newest");
+}
+
+/// A sort with an odd number of swaps is all right in a step: it keeps nothing for the next one.
+#[test]
+fn parts_that_swap_can_stand_in_steps() {
+    let text = r#"Graph(
+        state: { "keys": Buffer(items: 1000), "sorted": Buffer(items: 1000) },
+        resources: { "color": Texture(format: Rgba16Float, size: "viewport") },
+        passes: [
+            Steps(rate: PerFrame, passes: [
+                Clear("keys"),
+                Use(graph: "parts/radix_sort.ron", name: "sort", params: {"bits": 15}),
+                Copy(from: "sort.pairs", to: "sorted"),
+            ]),
+            Clear("color"),
+        ],
+        outputs: ["color", "sorted"],
+    )"#;
+    let files = meniscus::files::MemoryFiles::default().with("sorted.ron", text);
+    let mut sources = Sources::new();
+    let loaded = program::load(&files, &mut sources, "sorted.ron", None);
+    let mut diagnostics = loaded.diagnostics;
+    diagnostics.extend(loaded.program.as_ref().map(check::check).unwrap_or_default());
+    assert!(!diagnostics.has_errors(), "{}", rendered(&diagnostics, &sources));
+}

@@ -286,7 +286,8 @@ impl Lowering<'_> {
                     self.rings[ring].turn = (at + n - home) % n;
                     self.vars[v].now = ObjectRef::Ring { ring, index: home };
                 }
-                ObjectRef::Fixed(id) if at_start(v) != now => {
+                // What only the steps name holds nothing from one step to the next, whatever it swaps with.
+                ObjectRef::Fixed(id) if v < before.len() && at_start(v) != now => {
                     let name = self.objects[id].object.path.clone();
                     let message = format!("`{name}` swaps inside `Steps` and is no state");
                     let diagnostic = fault(Code::STATE, message, word, "an odd number of swaps in a step")
