@@ -131,17 +131,12 @@ fn places(text: &str, tokens: &[Token]) -> Vec<Place> {
     tokens.iter().enumerate().map(place).collect()
 }
 
-/// The brackets, and with `opened` also an opening one after each word that certainly lacks it:
-/// `each: Texel "z")`.
+/// The brackets, and with `opened` also an opening one where one is certainly lacking.
 fn find_marks(tokens: &[Token], places: &[Place], opened: bool) -> Vec<Mark> {
     let mut marks = Vec::new();
     for (token, t) in tokens.iter().enumerate() {
         let place = places[token];
-        let lacks = |word: &Token, before: &Token| {
-            let is_value = !matches!(t.kind, TokenKind::Open(_) | TokenKind::Bad) && t.kind.starts_value();
-            is_value && matches!(word.kind, TokenKind::Ident(_)) && before.kind == TokenKind::Colon
-        };
-        if opened && token >= 2 && lacks(&tokens[token - 1], &tokens[token - 2]) {
+        if opened && lacks_opener(tokens, token) {
             marks.push(Mark { token, bracket: Bracket::Round, opens: true, is_lost: true, place });
         }
         if let TokenKind::Open(bracket) | TokenKind::Close(bracket) = t.kind {
@@ -150,6 +145,24 @@ fn find_marks(tokens: &[Token], places: &[Place], opened: bool) -> Vec<Mark> {
         }
     }
     marks
+}
+
+/// Whether a round bracket should open before a token: after the word in `each: Texel "z")`, and
+/// before a tuple as in `default: 0.5, 0.5), unit: "m"`.
+fn lacks_opener(tokens: &[Token], token: usize) -> bool {
+    let kind = |at: Option<usize>| at.and_then(|at| tokens.get(at)).map(|t| &t.kind);
+    let is_literal =
+        |at: usize| matches!(kind(Some(at)), Some(TokenKind::Int(_) | TokenKind::Float(_) | TokenKind::Str(..)));
+    let follows_colon = |at: Option<usize>| kind(at) == Some(&TokenKind::Colon);
+    let after_word = matches!(kind(token.checked_sub(1)), Some(TokenKind::Ident(_)))
+        && follows_colon(token.checked_sub(2))
+        && (is_literal(token) || matches!(kind(Some(token)), Some(TokenKind::Ident(_) | TokenKind::Char(_))));
+    let in_tuple = follows_colon(token.checked_sub(1))
+        && is_literal(token)
+        && kind(Some(token + 1)) == Some(&TokenKind::Comma)
+        && is_literal(token + 2)
+        && kind(Some(token + 3)) != Some(&TokenKind::Colon);
+    after_word || in_tuple
 }
 
 /// The column (in bytes) and the end of the line of an offset.

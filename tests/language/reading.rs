@@ -17,13 +17,15 @@ fn everything() -> (Graph, Sources) {
     (graph.unwrap(), sources)
 }
 
-/// The draws of a graph, those of loops included.
+/// The draws at the top of a graph.
 fn draws(graph: &Graph) -> Vec<&Draw> {
-    let of = |kind| match kind {
-        &NodeKind::Draw(ref draw) => Some(draw),
-        _ => None,
-    };
-    graph.passes.iter().filter_map(|node| of(&node.kind)).collect()
+    let mut draws = Vec::new();
+    for node in &graph.passes {
+        if let NodeKind::Draw(draw) = &node.kind {
+            draws.push(draw);
+        }
+    }
+    draws
 }
 
 #[test]
