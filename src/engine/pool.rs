@@ -1,8 +1,11 @@
 //! Textures and buffers by description. Objects keep their handle; what stands behind it may be
 //! swapped (shared from another graph, made anew at a reset, taken over at a reload).
 
+use std::collections::BTreeSet;
+
 use wgpu_types::{BufferUsages, TextureUsages};
 
+use super::bind::references;
 use super::errors;
 use super::gpu::Gpu;
 use crate::diagnostic::{Diagnostic, Diagnostics};
@@ -75,8 +78,11 @@ impl Pool {
             pool.take_over(previous, state_kept);
         }
         let mut found = Diagnostics::new();
+        // What passes that were left out would have used has no use, and no memory.
+        let used: BTreeSet<Handle> = used(plan).into_iter().map(|id| pool.of[id]).collect();
         for at in 0..pool.slots.len() {
             if !is_input(&pool.slots[at].origin)
+                && used.contains(&Handle(at))
                 && let Err(diagnostic) = pool.ensure_slot(gpu, plan, at)
             {
                 found.push(diagnostic);
@@ -295,6 +301,12 @@ fn widen_texture(gpu: &Gpu, texture: &mut Texture, mips: bool) {
             texture.usages |= TextureUsages::STORAGE_BINDING;
         }
     }
+}
+
+/// Objects that passes use, and outputs.
+fn used(plan: &Plan) -> BTreeSet<ObjectId> {
+    let of_passes = plan.passes.iter().flat_map(references);
+    of_passes.chain(plan.outputs.iter().map(|o| o.object)).flat_map(|object| candidates(plan, object)).collect()
 }
 
 /// Every object that a reference can stand for.

@@ -28,6 +28,8 @@ pub struct Generated {
     pub passes: usize,
     times: i64,
     fancy: bool,
+    /// What somebody asks for besides the first output.
+    roots: Vec<String>,
 }
 
 impl Generated {
@@ -47,7 +49,7 @@ impl Generated {
             params: params.into_iter().map(|(name, value)| (name.to_owned(), value)).collect(),
             inputs: Default::default(),
             capacities: Default::default(),
-            roots: Vec::new(),
+            roots: self.roots.clone(),
             features,
             limits,
         }
@@ -463,6 +465,7 @@ impl Builder<'_> {
         if let Some(at) = second {
             written.swap(1, at);
         }
+        let roots = if self.below(2) == 0 { written.clone() } else { Vec::new() };
         let outputs: Vec<String> = written.iter().take(3).map(|name| format!("{name:?}")).collect();
         let resources: String = self.things.iter().map(declaration).collect();
         let graph = format!(
@@ -472,7 +475,7 @@ impl Builder<'_> {
             self.text,
             outputs.join(", ")
         );
-        Generated { graph, shaders: shaders(), passes: self.passes, times: self.times, fancy: self.fancy }
+        Generated { graph, shaders: shaders(), passes: self.passes, times: self.times, fancy: self.fancy, roots }
     }
 }
 

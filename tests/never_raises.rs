@@ -1,0 +1,185 @@
+//! What instantiates never raises an error of wgpu's: random graphs, planned and run on the
+//! device, under both policies of memory, with some steps, many and none.
+
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+#[path = "support/generate.rs"]
+mod generate;
+#[path = "engine/harness.rs"]
+mod harness;
+
+use std::collections::BTreeSet;
+use std::process::ExitCode;
+
+use generate::{Generated, grow};
+use meniscus::diagnostic::{Diagnostics, Style, render_all};
+use meniscus::engine::{Engine, Frame, Policy, StepInfo};
+use meniscus::format::TextureFormat;
+use meniscus::plan::model::{Bound, ObjectKind, ObjectRef, PassKind, Plan};
+use wgpu_types::{BufferUsages, TextureUsages};
+
+/// `MENISCUS_GRAPHS=5000` in the environment looks further.
+const GRAPHS: u64 = 150;
+
+fn main() -> ExitCode {
+    harness::run(cases![
+        random_graphs_raise_no_error,
+        a_format_that_was_changed_is_caught,
+        a_usage_that_is_missing_is_caught,
+        a_view_beyond_its_texture_is_caught,
+        a_copy_to_a_layer_that_is_not_there_is_caught,
+    ])
+}
+
+/// Numbers from a seed, the same on every machine (splitmix64).
+fn numbers(seed: u64) -> Vec<u32> {
+    let mut state = seed;
+    let mut next = || {
+        state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = state;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((z ^ (z >> 31)) >> 16) as u32
+    };
+    let count = 40 + next() % 80;
+    (0..count).map(|_| next()).collect()
+}
+
+fn plan(engine: &Engine, graph: &Generated) -> Plan {
+    let request = graph.request(engine.gpu().features(), engine.gpu().limits(), false);
+    graph.plan(&request).unwrap_or_else(|(found, sources)| {
+        panic!("{}\n{}", graph.graph, render_all(&found, &sources, Style::Plain));
+    })
+}
+
+/// Prepares and runs a plan; gives everything that the device refused.
+fn run(engine: &mut Engine, plan: Plan) -> Result<(), Diagnostics> {
+    let mut runner = engine.prepare(plan, None).map_err(|refused| refused.diagnostics)?;
+    for (number, steps) in [1, 3, 0].into_iter().enumerate() {
+        let steps = [steps];
+        let live = |_: &str, _: Option<&StepInfo>| None;
+        let frame = Frame { time: 0.25, delta: 0.25, frame: number as u64, steps: &steps, live: &live, only: None };
+        runner.run(engine, &frame)?;
+        runner.finish(engine)?;
+    }
+    engine.gpu().check()?;
+    Ok(())
+}
+
+fn random_graphs_raise_no_error(engine: &mut Engine) {
+    let mut kinds = BTreeSet::new();
+    let asked = std::env::var("MENISCUS_GRAPHS").ok().and_then(|count| count.parse().ok());
+    for seed in 0..asked.unwrap_or(GRAPHS) {
+        let graph = grow(&numbers(seed));
+        let plan = plan(engine, &graph);
+        kinds.extend(plan.passes.iter().map(|pass| match &pass.kind {
+            PassKind::Compute { .. } => "compute",
+            PassKind::Draw(_) => "draw",
+            PassKind::Clear { .. } => "clear",
+            PassKind::Copy { .. } => "copy",
+            PassKind::Mips { .. } => "mips",
+            PassKind::Settle { .. } => "settle",
+            PassKind::Arguments { .. } => "arguments",
+        }));
+        engine.policy = if seed % 2 == 0 { Policy::Keep } else { Policy::Smallest };
+        if let Err(found) = run(engine, plan) {
+            panic!("seed {seed}: {:?}\n{}", found.iter().map(|d| &d.message).collect::<Vec<_>>(), graph.graph);
+        }
+    }
+    let all = ["arguments", "clear", "compute", "copy", "draw", "mips", "settle"];
+    assert_eq!(kinds.into_iter().collect::<Vec<_>>(), all, "the graphs hold every kind of pass");
+}
+
+/// The first graphs, altered after planning: each alteration that applies must be caught.
+fn caught(engine: &mut Engine, what: &str, alter: impl Fn(&mut Plan) -> bool) {
+    let mut applied = 0;
+    for seed in 0..12 {
+        let mut plan = plan(engine, &grow(&numbers(seed)));
+        if alter(&mut plan) {
+            applied += 1;
+            assert!(run(engine, plan).is_err(), "seed {seed}: {what} was not caught");
+        }
+        if applied == 3 {
+            return;
+        }
+    }
+    assert!(applied > 0, "{what}: no graph has something to alter");
+}
+
+fn a_format_that_was_changed_is_caught(engine: &mut Engine) {
+    caught(engine, "a target of another format", |plan| {
+        let target = plan.passes.iter_mut().find_map(|pass| match &mut pass.kind {
+            PassKind::Draw(draw) => draw.color.first_mut(),
+            _ => None,
+        });
+        target.is_some_and(|target| {
+            target.format = TextureFormat::Rg32Float;
+            true
+        })
+    });
+}
+
+fn a_usage_that_is_missing_is_caught(engine: &mut Engine) {
+    caught(engine, "a texture that cannot be bound", |plan| {
+        let bound = plan.passes.iter().find_map(|pass| match &pass.kind {
+            PassKind::Draw(draw) => draw.shader.bindings.iter().find_map(|binding| match &binding.bound {
+                Bound::Texture { view, .. } => Some(view.object),
+                _ => None,
+            }),
+            _ => None,
+        });
+        let Some(ObjectRef::Fixed(id)) = bound else { return false };
+        let ObjectKind::Texture(texture) = &mut plan.objects[id].kind else { return false };
+        texture.usages.remove(TextureUsages::TEXTURE_BINDING);
+        // Others in the same memory would bring it back, and mips that the engine makes need it.
+        alone(plan);
+        !plan.passes.iter().any(|pass| pass.kind == PassKind::Mips { texture: ObjectRef::Fixed(id) })
+    });
+    caught(engine, "a buffer that cannot be bound", |plan| {
+        let id = plan.passes.iter().find_map(|pass| match &pass.kind {
+            PassKind::Compute { .. } => pass.accesses.iter().find_map(|access| match access.object {
+                ObjectRef::Fixed(id) => matches!(plan.objects[id].kind, ObjectKind::Buffer(_)).then_some(id),
+                ObjectRef::Ring { .. } => None,
+            }),
+            _ => None,
+        });
+        let Some(ObjectKind::Buffer(buffer)) = id.map(|id| &mut plan.objects[id].kind) else { return false };
+        buffer.usages.remove(BufferUsages::STORAGE);
+        // Others in the same memory would bring it back.
+        alone(plan);
+        true
+    });
+}
+
+/// Gives each object memory of its own.
+fn alone(plan: &mut Plan) {
+    for slots in [&mut plan.memory.keep, &mut plan.memory.smallest] {
+        slots.clear();
+    }
+}
+
+fn a_view_beyond_its_texture_is_caught(engine: &mut Engine) {
+    caught(engine, "a mip that is not there", |plan| {
+        let target = plan.passes.iter_mut().find_map(|pass| match &mut pass.kind {
+            PassKind::Draw(draw) => draw.color.first_mut(),
+            _ => None,
+        });
+        target.is_some_and(|target| {
+            target.view.mips = 9..10;
+            true
+        })
+    });
+}
+
+fn a_copy_to_a_layer_that_is_not_there_is_caught(engine: &mut Engine) {
+    caught(engine, "a layer that is not there", |plan| {
+        let to = plan.passes.iter_mut().find_map(|pass| match &mut pass.kind {
+            PassKind::Copy { to, .. } if !to.layers.is_empty() => Some(to),
+            _ => None,
+        });
+        let Some(to) = to else { return false };
+        let ObjectRef::Fixed(id) = to.object else { return false };
+        to.layers = 7..8;
+        matches!(plan.objects[id].kind, ObjectKind::Texture(_))
+    });
+}
