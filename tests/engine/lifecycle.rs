@@ -46,7 +46,9 @@ pub fn a_failure_leaves_the_runner_before(engine: &mut Engine) {
     run(engine, &mut runner);
     // A texture larger than any device has.
     let mut wrong = plan.clone();
-    wrong.texture("huge", TextureFormat::Rgba32Float, 1 << 20, 4);
+    let huge = wrong.texture("huge", TextureFormat::Rgba32Float, 1 << 20, 4);
+    // What no pass uses would have no memory.
+    wrong.pass("clear", PassKind::Clear { view: wrong.whole(huge), value: [0.0; 4] });
     let back = refused(engine, wrong, Some(runner));
     assert!(back.diagnostics.iter().all(|d| d.id == Code::DEVICE && !is_device_gone(d)), "{:?}", back.diagnostics);
     assert!(back.diagnostics.iter().any(|d| d.message.contains("`huge`")), "{:?}", back.diagnostics);

@@ -35,6 +35,7 @@ pub fn new_plan() -> Plan {
         memory: Memory::default(),
         needs: Needs::default(),
         params: Vec::new(),
+        structural: Default::default(),
         taken: BTreeMap::new(),
         argument_slots: 8,
         warnings: meniscus::diagnostic::Diagnostics::new(),

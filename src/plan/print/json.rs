@@ -74,6 +74,7 @@ fn value(plan: &Plan) -> Json {
                 .collect::<Vec<_>>(),
         },
         "params": plan.params.iter().map(param).collect::<Vec<_>>(),
+        "structural_params": plan.structural,
         "files": plan.taken.iter().map(|(name, path)| (name.clone(), path.display().to_string()))
             .collect::<BTreeMap<_, _>>(),
         "warnings": plan.warnings.iter().map(|d| json!({ "id": d.id.as_str(), "message": d.message }))
