@@ -212,3 +212,32 @@ fn parts_that_swap_can_stand_in_steps() {
     diagnostics.extend(loaded.program.as_ref().map(check::check).unwrap_or_default());
     assert!(!diagnostics.has_errors(), "{}", rendered(&diagnostics, &sources));
 }
+
+/// What a pass says of samples is what its targets have.
+#[test]
+fn samples_of_a_pass_agree_with_its_targets() {
+    let graph = |samples: &str| {
+        format!(
+            r#"Graph(
+                resources: {{
+                    "many": Texture(format: Rgba16Float, size: "viewport", samples: 4),
+                    "color": Texture(format: Rgba16Float, size: "viewport"),
+                }},
+                passes: [Fullscreen(shader: "grey.wgsl"{samples}, color: [(to: "many", clear: 0.0, resolve: "color")])],
+                outputs: ["color"],
+            )"#
+        )
+    };
+    let shader = "@fragment fn grey() -> @location(0) vec4f { return vec4f(0.5); }";
+    for (said, message) in [
+        ("", None),
+        (", samples: 4", None),
+        (", samples: 1", Some("the pass says 1 samples, and its targets have 4")),
+        (", samples: \"no_such_name\"", Some("nothing is called `no_such_name`")),
+    ] {
+        let files = meniscus::files::MemoryFiles::default().with("a.ron", graph(said)).with("grey.wgsl", shader);
+        let program = program::load(&files, &mut Sources::new(), "a.ron", None).program.unwrap();
+        let found: Vec<String> = check::check(&program).0.into_iter().map(|d| d.message).collect();
+        assert_eq!(found, message.map(str::to_owned).into_iter().collect::<Vec<_>>(), "{said}");
+    }
+}

@@ -49,6 +49,7 @@ impl Lowering<'_> {
             (color, depth) => (color?, depth?),
         };
         let (extent, samples) = self.extent(s, draw, &color, depth.as_ref(), node.word)?;
+        self.check_samples(s, draw, samples, &mut draft)?;
         let region = self.region(s, draw, extent, &mut draft)?;
         draft.kind = PassKind::Draw(Box::new(Draw {
             shader,
@@ -545,6 +546,23 @@ impl Lowering<'_> {
                 Err(traced(diagnostic, &self.scopes[s].trace))
             }
         }
+    }
+
+    /// `samples` on a pass says what its targets have, and nothing else.
+    fn check_samples(&mut self, s: ScopeId, draw: &ast::Draw, samples: u32, draft: &mut Draft) -> Result<()> {
+        let Some(expr) = &draw.samples else { return Ok(()) };
+        let (said, causes) = self.whole(s, expr, "samples", 1)?;
+        draft.causes.add(&causes);
+        if said == i64::from(samples) {
+            return Ok(());
+        }
+        let message = format!("the pass says {said} samples, and its targets have {samples}");
+        let mut diagnostic = fault(Code::TARGET_MISMATCH, message, expr.span, format!("this is {said}"));
+        let target = draw.color.first().map(|t| t.span).or(draw.depth.as_ref().map(|d| d.span));
+        if let Some(span) = target {
+            diagnostic = diagnostic.see(span, format!("{samples} here"));
+        }
+        Err(traced(diagnostic.hint("leave `samples` out: the targets decide"), &self.scopes[s].trace))
     }
 
     fn region(
