@@ -125,8 +125,8 @@ fn main() {
     // `cargo test --benches` only asks whether it runs.
     let sizes: &[usize] = if std::env::args().any(|a| a == "--bench") { &[250, 1000, 4000, 10_000] } else { &[50] };
     println!("{:<9} {:>7} {:>10} {:>7} {:>10} {:>12}", "shape", "passes", "resources", "live", "ms", "us per pass");
-    let shapes: [(&str, fn(usize) -> String); 4] =
-        [("chain", chain), ("fan", fan), ("culled", culled), ("unrolled", unrolled)];
+    type Shape = (&'static str, fn(usize) -> String);
+    let shapes: [Shape; 4] = [("chain", chain), ("fan", fan), ("culled", culled), ("unrolled", unrolled)];
     for (name, graph) in shapes {
         for n in sizes.iter().copied() {
             let program = load(&graph(n));

@@ -12,7 +12,7 @@ struct Written(Vec<Vec<bool>>);
 
 /// Checks the flat list in program order.
 pub(super) fn check(lowering: &mut Lowering<'_>, outputs: &[Output]) {
-    let mut faults: Vec<Box<Diagnostic>> = Vec::new();
+    let mut faults: Vec<Diagnostic> = Vec::new();
     let mut written = Written::at_start(lowering);
     let mut before_steps: Option<(usize, Vec<Vec<bool>>)> = None;
     for flat in &lowering.flat {
@@ -32,22 +32,22 @@ pub(super) fn check(lowering: &mut Lowering<'_>, outputs: &[Output]) {
                 && !in_conflict
                 && let Some(fault) = written.missing(lowering, flat, access, place)
             {
-                faults.push(fault);
+                faults.push(*fault);
             }
         }
         for access in flat.pass.accesses.iter().filter(|a| a.write) {
             written.mark(lowering, access);
         }
-        faults.extend(conflict.map(|(_, fault)| fault));
+        faults.extend(conflict.map(|(_, fault)| *fault));
     }
     if let Some((_, saved)) = before_steps {
         written.0 = saved;
     }
-    faults.extend(outputs.iter().filter_map(|output| written.missing_output(lowering, output)));
+    faults.extend(outputs.iter().filter_map(|output| written.missing_output(lowering, output)).map(|fault| *fault));
     faults.extend(hidden_writes(lowering, outputs));
     faults.extend(state_rules(lowering));
     for fault in faults {
-        lowering.diagnostics.push(*fault);
+        lowering.diagnostics.push(fault);
     }
 }
 
@@ -216,7 +216,7 @@ fn overlap(a: &std::ops::Range<u32>, b: &std::ops::Range<u32>) -> bool {
 }
 
 /// A part tells its users what it writes: an input that it writes is among its outputs.
-fn hidden_writes(lowering: &Lowering<'_>, outputs: &[Output]) -> Vec<Box<Diagnostic>> {
+fn hidden_writes(lowering: &Lowering<'_>, outputs: &[Output]) -> Vec<Diagnostic> {
     let mut faults = Vec::new();
     for (id, building) in lowering.objects.iter().enumerate() {
         let Origin::Input(name) = &building.object.origin else { continue };
@@ -230,13 +230,13 @@ fn hidden_writes(lowering: &Lowering<'_>, outputs: &[Output]) -> Vec<Box<Diagnos
         let diagnostic = fault(Code::BAD_PASS, message, flat.word, "written by this pass")
             .see(building.object.span, "declared here")
             .hint(format!("add \"{name}\" to `outputs`, or copy it to a resource first"));
-        faults.push(traced(diagnostic, &flat.trace));
+        faults.push(*traced(diagnostic, &flat.trace));
     }
     faults
 }
 
 /// State is written inside exactly one `Steps`.
-fn state_rules(lowering: &mut Lowering<'_>) -> Vec<Box<Diagnostic>> {
+fn state_rules(lowering: &mut Lowering<'_>) -> Vec<Diagnostic> {
     let mut faults = Vec::new();
     for id in 0..lowering.objects.len() {
         if !matches!(lowering.objects[id].object.origin, Origin::State(_)) {
@@ -256,7 +256,7 @@ fn state_rules(lowering: &mut Lowering<'_>) -> Vec<Box<Diagnostic>> {
                         let diagnostic = fault(Code::STATE, message, place.graph, "written here")
                             .see(object.span, "declared as state")
                             .hint("state is what happens over time: write it inside `Steps`, or declare it under `resources:`");
-                        faults.push(traced(diagnostic, &flat.trace));
+                        faults.push(*traced(diagnostic, &flat.trace));
                     }
                 }
             }
@@ -269,7 +269,7 @@ fn state_rules(lowering: &mut Lowering<'_>) -> Vec<Box<Diagnostic>> {
                 diagnostic = diagnostic.at(*at, format!("written in `{}`", lowering.steps[*steps].path));
             }
             let diagnostic = diagnostic.see(object.span, "declared as state");
-            faults.push(Box::new(diagnostic.hint("state belongs to one `Steps`: give the other one its own")));
+            faults.push(diagnostic.hint("state belongs to one `Steps`: give the other one its own"));
         }
         let read = lowering
             .flat
@@ -280,7 +280,7 @@ fn state_rules(lowering: &mut Lowering<'_>) -> Vec<Box<Diagnostic>> {
             let message = format!("nothing writes the state `{}`", object.path);
             let diagnostic = fault(Code::NEVER_WRITTEN, message, object.span, "declared as state")
                 .hint("write it inside `Steps(rate: ..., passes: [...])`");
-            faults.push(Box::new(diagnostic));
+            faults.push(diagnostic);
         }
         if let Some(steps) = steps {
             lowering.objects[id].object.origin = Origin::State(steps);

@@ -55,8 +55,9 @@ fn plan(program: &Program, request: &Request, stand_in: bool) -> Result<Plan, Di
     if lowering.diagnostics.has_errors() {
         return Err(lowering.diagnostics);
     }
-    let mut warnings = unused(&lowering);
-    let unread = unread(&lowering, &outputs);
+    // One plan says nothing about the others: "unused" is for checks, which compare them.
+    let mut warnings = if stand_in { unused(&lowering) } else { Diagnostics::new() };
+    let unread = if stand_in { unread(&lowering, &outputs) } else { Vec::new() };
     let culled = cull::cull(&mut lowering, &roots);
     // What only culled passes write is said of these.
     for (object, is_written, diagnostic) in unread {
@@ -153,13 +154,10 @@ fn outputs(lowering: &mut Lowering<'_>) -> Vec<Output> {
     }
     for output in &graph.outputs {
         let entity = lowering.resolve(0, &output.of.value, output.of.span);
-        match lowering.report(entity) {
-            Some(Entity::Var(var)) => {
-                let object = lowering.vars[var].now;
-                outputs.push(Output { name: output.name.value.clone(), object, span: output.of.span });
-            }
-            // Parts put out scalars and inputs too; those need no pass.
-            Some(_) | None => {}
+        // Parts put out scalars and inputs too; those need no pass.
+        if let Some(Entity::Var(var)) = lowering.report(entity) {
+            let object = lowering.vars[var].now;
+            outputs.push(Output { name: output.name.value.clone(), object, span: output.of.span });
         }
     }
     outputs

@@ -48,7 +48,7 @@ fn plans_of_shipped_graphs() {
     let mut reports = Vec::new();
     for graph in graphs() {
         let compared = plan(&graph).and_then(|plan| {
-            golden::compare(&format!("tests/plan/shipped/{}.txt", flat(&graph)).as_ref(), &print::text(&plan))
+            golden::compare(format!("tests/plan/shipped/{}.txt", flat(&graph)).as_ref(), &print::text(&plan))
         });
         reports.extend(compared.err().map(|report| format!("{}: {report}", graph.display())));
     }

@@ -607,8 +607,11 @@ fn locals(graph: &Graph) -> HashMap<String, Local> {
     locals
 }
 
+/// A test around a `Use`, and what it must give for the use to be taken.
+type Tested = (Expr, bool);
+
 /// Visits every `Use` with the tests that must hold for it to be taken.
-fn uses(nodes: &[Node], tests: &mut Vec<(Expr, bool)>, visit: &mut dyn FnMut(&Use, &[(Expr, bool)])) {
+fn uses(nodes: &[Node], tests: &mut Vec<Tested>, visit: &mut dyn FnMut(&Use, &[Tested])) {
     for node in nodes {
         match &node.kind {
             NodeKind::Use(used) => visit(used, tests),

@@ -150,7 +150,7 @@ fn columns(plan: &Plan, layout: &Layout, out: &mut String) {
     for (c, row) in layout.rows.iter().enumerate() {
         let unit = plan.passes[row.first].unit;
         let (x, y) = (layout.x(c), layout.top);
-        let shade = if unit % 2 == 0 { "#f3f6fa" } else { "#e6ecf3" };
+        let shade = if unit.is_multiple_of(2) { "#f3f6fa" } else { "#e6ecf3" };
         let height = bottom - y;
         _ = writeln!(out, r#"<rect x="{x}" y="{y}" width="{COLUMN}" height="{height}" fill="{shade}"/>"#);
         let (tx, ty) = (x + COLUMN / 2 + 3, y - 5);
