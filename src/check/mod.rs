@@ -6,6 +6,10 @@
 mod passes;
 mod variants;
 
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use variants::Variant;
+
 use crate::diagnostic::{Code, Diagnostic, Diagnostics, Severity};
 use crate::plan;
 use crate::plan::model::{Plan, Request};
@@ -25,15 +29,13 @@ pub fn check(program: &Program) -> Diagnostics {
         }
     };
     let mut odd = oddities(&plan);
-    for (said, request) in variants::others(program, &base, &plan) {
-        match plan::instantiate_stand_in(program, &request) {
-            Ok(plan) => {
-                let now = oddities(&plan);
-                odd.retain(|d| now.iter().any(|n| n.id == d.id && n.labels == d.labels));
-            }
-            Err(diagnostics) => {
+    let variants = variants::others(program, &base, &plan);
+    for outcome in in_parallel(&variants, &|variant| outcomes(program, variant)).into_iter().flatten() {
+        match outcome {
+            Ok(now) => odd.retain(|d| now.iter().any(|n| n.id == d.id && n.labels == d.labels)),
+            Err((diagnostics, said)) => {
                 for diagnostic in diagnostics.0 {
-                    keep_new(&mut found, diagnostic, &said);
+                    keep_new(&mut found, diagnostic, said);
                 }
             }
         }
@@ -42,6 +44,47 @@ pub fn check(program: &Program) -> Diagnostics {
         found.push(diagnostic);
     }
     found
+}
+
+/// The oddities of a variant, or its errors and the words that say what it is.
+type Outcome<'a> = Result<Vec<Diagnostic>, (Diagnostics, &'a str)>;
+
+/// The outcome of a variant; if it is several things at once and fails, that of each.
+fn outcomes<'a>(program: &Program, variant: &'a Variant) -> Vec<Outcome<'a>> {
+    match plan::instantiate_stand_in(program, &variant.request) {
+        Ok(plan) => vec![Ok(oddities(&plan))],
+        Err(_) if !variant.each.is_empty() => variant.each.iter().flat_map(|each| outcomes(program, each)).collect(),
+        Err(diagnostics) => vec![Err((diagnostics, &variant.said))],
+    }
+}
+
+/// Does something for each of many, on all processors, and gives the results in their order.
+fn in_parallel<'a, T: Sync, R: Send>(all: &'a [T], work: &(dyn Fn(&'a T) -> R + Sync)) -> Vec<R> {
+    let threads = std::thread::available_parallelism().map_or(1, usize::from).min(all.len().max(1));
+    if threads == 1 {
+        return all.iter().map(work).collect();
+    }
+    let next = AtomicUsize::new(0);
+    let take = || {
+        let mut done = Vec::new();
+        while let Some((i, item)) = Some(next.fetch_add(1, Ordering::Relaxed)).and_then(|i| Some((i, all.get(i)?))) {
+            done.push((i, work(item)));
+        }
+        done
+    };
+    let mut done: Vec<(usize, R)> = std::thread::scope(|scope| {
+        let helpers: Vec<_> = (1..threads).map(|_| scope.spawn(take)).collect();
+        let mut done = take();
+        for helper in helpers {
+            match helper.join() {
+                Ok(more) => done.extend(more),
+                Err(panic) => std::panic::resume_unwind(panic),
+            }
+        }
+        done
+    });
+    done.sort_by_key(|(i, _)| *i);
+    done.into_iter().map(|(_, result)| result).collect()
 }
 
 /// What the graph needs that not every device has.

@@ -60,22 +60,46 @@ fn attributes(program: &Program, optional_too: bool) -> Vec<String> {
     names
 }
 
-/// One thing at a time otherwise, with words that say what. `plan` is the plan of `base`: whether
-/// a parameter's value fits where a uniform holds it was seen there, so that only parameters on
-/// which more hangs are tried.
-pub(super) fn others(program: &Program, base: &Request, plan: &Plan) -> Vec<(String, Request)> {
+/// Something otherwise than in the base.
+pub(super) struct Variant {
+    /// Words that say what.
+    pub said: String,
+    pub request: Request,
+    /// If several things are otherwise at once: each of them by itself. Nothing is wrong with any
+    /// of them if nothing is with all together.
+    pub each: Vec<Variant>,
+}
+
+impl Variant {
+    fn new(said: impl Into<String>, request: Request) -> Self {
+        Self { said: said.into(), request, each: Vec::new() }
+    }
+
+    fn param(base: &Request, param: &Param, value: Value) -> Self {
+        let mut request = base.clone();
+        let said = format!("`{}` = {value}", param.path);
+        request.params.insert(param.path.clone(), value);
+        Self::new(said, request)
+    }
+}
+
+/// One thing at a time otherwise. `plan` is the plan of `base`: whether a parameter's value fits
+/// where a uniform holds it was seen there, so that only parameters on which more hangs are tried.
+pub(super) fn others(program: &Program, base: &Request, plan: &Plan) -> Vec<Variant> {
     let mut all = Vec::new();
-    for param in plan.params.iter().filter(|param| plan.structural.contains(&param.path)) {
-        for value in other_values(param) {
-            let mut request = base.clone();
-            request.params.insert(param.path.clone(), value.clone());
-            all.push((format!("`{}` = {value}", param.path), request));
+    let mut in_arithmetic = Vec::new();
+    for param in &plan.params {
+        if plan.structural.contains(&param.path) {
+            all.extend(other_values(param).into_iter().map(|value| Variant::param(base, param, value)));
+        } else if plan.arithmetic.contains(&param.path) {
+            in_arithmetic.push(param);
         }
     }
+    all.extend(together(base, &in_arithmetic));
     for input in program.root.inputs.iter().filter(|i| i.optional) {
         let mut request = base.clone();
         request.inputs.remove(&input.name.value);
-        all.push((format!("`{}` absent", input.name.value), request));
+        all.push(Variant::new(format!("`{}` absent", input.name.value), request));
     }
     let needed = attributes(program, false);
     if needed.len() < attributes(program, true).len() {
@@ -85,7 +109,7 @@ pub(super) fn others(program: &Program, base: &Request, plan: &Plan) -> Vec<(Str
                 attributes.retain(|(name, _)| needed.contains(name));
             }
         }
-        all.push(("no optional attribute".to_owned(), request));
+        all.push(Variant::new("no optional attribute", request));
     }
     let mut empty = base.clone();
     for info in empty.inputs.values_mut() {
@@ -94,12 +118,29 @@ pub(super) fn others(program: &Program, base: &Request, plan: &Plan) -> Vec<(Str
         }
     }
     if empty.inputs != base.inputs {
-        all.push(("zero particles".to_owned(), empty));
+        all.push(Variant::new("zero particles", empty));
     }
     let mut small = base.clone();
     small.viewport = [1, 1];
-    all.push(("a viewport of 1 x 1".to_owned(), small));
+    all.push(Variant::new("a viewport of 1 x 1", small));
     all
+}
+
+/// Parameters that decide no structure, all at their first other value, all at their second.
+fn together(base: &Request, params: &[&Param]) -> Vec<Variant> {
+    let values: Vec<Vec<Value>> = params.iter().map(|param| other_values(param)).collect();
+    let most = values.iter().map(Vec::len).max().unwrap_or(0);
+    let round = |i: usize| {
+        let mut all = Variant::new("several parameters at their ends", base.clone());
+        for (param, values) in params.iter().zip(&values) {
+            if let Some(value) = values.get(i) {
+                all.request.params.insert(param.path.clone(), value.clone());
+                all.each.push(Variant::param(base, param, value.clone()));
+            }
+        }
+        all
+    };
+    (0..most).map(round).collect()
 }
 
 /// Minimum, maximum, and the other words of a choice.

@@ -69,6 +69,9 @@ fn plan(program: &Program, request: &Request, stand_in: bool) -> Result<Plan, Di
     insert::cover_steps(&mut lowering);
     let units = units::units(&mut lowering);
     seal_steps(&mut lowering, &units);
+    if lowering.diagnostics.has_errors() {
+        return Err(lowering.diagnostics);
+    }
     mark_unordered(&mut lowering);
     finish(lowering, outputs, &roots, culled, units, argument_slots, warnings)
 }
@@ -123,6 +126,7 @@ fn finish(
         needs,
         params: lowering.params.into_values().collect(),
         structural: lowering.structural,
+        arithmetic: lowering.arithmetic,
         taken: lowering.program.taken(),
         argument_slots,
         warnings,

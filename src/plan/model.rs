@@ -47,8 +47,10 @@ pub struct Plan {
     /// Parameters under their instance paths, with the values that this plan was made for.
     pub params: Vec<Param>,
     /// Instance paths of those on which more hangs than what a uniform holds: sizes, counts, tests,
-    /// constants, arithmetic.
+    /// constants.
     pub structural: BTreeSet<String>,
+    /// Instance paths of those that stand in arithmetic.
+    pub arithmetic: BTreeSet<String>,
     /// Each `graph:` or `shader:` as written, and the file that was taken.
     pub taken: BTreeMap<String, PathBuf>,
     /// Number of 32-byte slots for indirect arguments that the engine's kernels write.

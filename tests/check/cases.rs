@@ -20,13 +20,18 @@ pub struct Case {
     pub files: MemoryFiles,
 }
 
-/// Every case, sorted by name.
+/// Every wrong program, sorted by name.
 pub fn cases() -> Vec<Case> {
-    let folder = golden::root().join("tests/check/cases");
+    let cases = read("cases");
+    assert!(cases.len() > 100, "the cases are not there");
+    cases
+}
+
+fn read(folder: &str) -> Vec<Case> {
+    let folder = golden::root().join("tests/check").join(folder);
     let mut paths: Vec<PathBuf> = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
     paths.retain(|path| path.extension().is_some_and(|e| e == "case"));
     paths.sort();
-    assert!(paths.len() > 100, "the cases are not there");
     paths.iter().map(|path| case(path.file_stem().unwrap().to_str().unwrap(), &text(path))).collect()
 }
 
@@ -72,6 +77,36 @@ fn every_mistake_is_told_as_its_golden_says() {
         reports.extend(golden::compare(expected.as_ref(), &text).err());
     }
     assert!(reports.is_empty(), "{}", reports.join("\n\n"));
+}
+
+/// What is near to a mistake and is none: `valid/NAME.case`.
+#[test]
+fn nothing_is_said_about_right_programs() {
+    let cases = read("valid");
+    assert!(cases.len() > 8, "the valid programs are not there");
+    let mut reports = Vec::new();
+    for case in cases {
+        let (diagnostics, sources) = said(&case);
+        if !diagnostics.is_empty() {
+            reports.push(format!("{}:\n{}", case.name, render_all(&diagnostics, &sources, Style::Plain)));
+        }
+    }
+    assert!(reports.is_empty(), "{}", reports.join("\n"));
+}
+
+/// A shader and a graph that do not fit are both shown.
+#[test]
+fn what_does_not_fit_is_shown_in_graph_and_shader() {
+    let of_both = ["binding-mismatch", "uniform-mismatch", "unbound", "layout-disagreement", "folded-dispatch"];
+    for case in cases() {
+        let (diagnostics, sources) = said(&case);
+        for diagnostic in diagnostics.iter().filter(|d| of_both.contains(&d.id.as_str())) {
+            for ending in [".ron", ".wgsl"] {
+                let is_shown = diagnostic.labels.iter().any(|label| sources.path(label.span.file).ends_with(ending));
+                assert!(is_shown, "{}: no {ending} file beside \"{}\"", case.name, diagnostic.message);
+            }
+        }
+    }
 }
 
 /// Neither silence nor a cascade.

@@ -165,6 +165,8 @@ pub(super) struct Lowering<'a> {
     evaluating: Vec<(Span, String)>,
     /// Parameters that more hangs on than what a uniform holds: sizes, counts, tests, constants.
     pub structural: BTreeSet<String>,
+    /// Parameters that stand in arithmetic, which can fail at other values than these.
+    pub arithmetic: BTreeSet<String>,
     /// Iterations and passes so far.
     unrolled: u64,
 }
@@ -196,6 +198,7 @@ impl<'a> Lowering<'a> {
             input_vars: BTreeMap::new(),
             evaluating: Vec::new(),
             structural: BTreeSet::new(),
+            arithmetic: BTreeSet::new(),
             unrolled: 0,
         }
     }

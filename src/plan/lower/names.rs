@@ -23,7 +23,7 @@ pub(in crate::plan) enum Local {
     Resource(usize),
     Sampler(usize),
     /// The uses of this name (several only in branches), with the tests around each.
-    Use(Vec<(Use, Vec<(Expr, bool)>)>),
+    Use(Arc<Vec<(Use, Vec<Test>)>>),
 }
 
 /// What a path stands for.
@@ -195,6 +195,15 @@ impl Lowering<'_> {
         }
     }
 
+    /// Whether a path may be followed by a dot and a name: an input's or a part's.
+    pub(super) fn has_fields(&self, s: ScopeId, path: &str) -> bool {
+        match self.scopes[s].locals.get(path.split('.').next().unwrap_or(path)) {
+            Some(Local::Use(_)) => true,
+            Some(Local::Input(_)) => !path.contains('.'),
+            _ => false,
+        }
+    }
+
     fn is_local(&self, s: ScopeId, name: &str) -> bool {
         let scope = &self.scopes[s];
         scope.locals.contains_key(name)
@@ -263,7 +272,7 @@ impl Lowering<'_> {
         let Some(Local::Use(candidates)) = self.scopes[s].locals.get(name).cloned() else {
             return Err(self.unknown(s, name, span));
         };
-        for (used, tests) in &candidates {
+        for (used, tests) in candidates.iter() {
             let mut taken = true;
             for (test, wanted) in tests {
                 taken &= self.boolean(s, test)?.0 == *wanted;
@@ -274,7 +283,7 @@ impl Lowering<'_> {
         }
         let message = format!("`{name}` is not there: the branch that uses it is not taken");
         let mut diagnostic = fault(Code::UNKNOWN_NAME, message, span, "needs the part");
-        for (used, _) in &candidates {
+        for (used, _) in candidates.iter() {
             diagnostic = diagnostic.see(used.name.span, "used only in a branch");
         }
         let diagnostic = diagnostic.hint("put what needs the part into the same branch, or use a part in both");
@@ -599,19 +608,19 @@ fn locals(graph: &Graph) -> HashMap<String, Local> {
         locals.insert(sampler.name.value.clone(), Local::Sampler(i));
     }
     uses(&graph.passes, &mut Vec::new(), &mut |used, tests| {
-        if let Local::Use(candidates) = locals.entry(used.name.value.clone()).or_insert_with(|| Local::Use(Vec::new()))
-        {
-            candidates.push((used.clone(), tests.to_vec()));
+        let local = locals.entry(used.name.value.clone()).or_insert_with(|| Local::Use(Arc::default()));
+        if let Local::Use(candidates) = local {
+            Arc::make_mut(candidates).push((used.clone(), tests.to_vec()));
         }
     });
     locals
 }
 
-/// A test around a `Use`, and what it must give for the use to be taken.
-type Tested = (Expr, bool);
+/// A test of an `If`, and the outcome that takes the branch.
+type Test = (Expr, bool);
 
 /// Visits every `Use` with the tests that must hold for it to be taken.
-fn uses(nodes: &[Node], tests: &mut Vec<Tested>, visit: &mut dyn FnMut(&Use, &[Tested])) {
+fn uses(nodes: &[Node], tests: &mut Vec<Test>, visit: &mut dyn FnMut(&Use, &[Test])) {
     for node in nodes {
         match &node.kind {
             NodeKind::Use(used) => visit(used, tests),

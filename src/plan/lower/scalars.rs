@@ -21,6 +21,9 @@ struct Names<'l, 'p> {
 
 impl eval::Scope for Names<'_, '_> {
     fn name(&self, path: &str, span: Span) -> std::result::Result<Lookup, Diagnostic> {
+        if let Some(part) = self.component(path, span) {
+            return part;
+        }
         let mut lowering = self.lowering.borrow_mut();
         match lowering.resolve(self.scope, path, span).map_err(|d| *d)? {
             Entity::Scalar(scalar) => {
@@ -54,6 +57,26 @@ impl eval::Scope for Names<'_, '_> {
     }
 }
 
+impl Names<'_, '_> {
+    /// `grid.x` where `grid` is no input or part, which could have something called `x`: settled
+    /// here, since looking for neighbours of a name that is not there takes long. What is wrong
+    /// with it is for the caller to say.
+    fn component(&self, path: &str, span: Span) -> Option<std::result::Result<Lookup, Diagnostic>> {
+        let (prefix, last) = path.rsplit_once('.')?;
+        let index = ["x", "y", "z", "w"].iter().position(|c| *c == last)?;
+        if self.lowering.borrow().has_fields(self.scope, prefix) {
+            return None;
+        }
+        Some(match eval::Scope::name(self, prefix, span) {
+            Ok(Lookup::Value(Value::Vector(parts))) if index < parts.len() => Ok(Lookup::Value(parts[index].clone())),
+            Ok(_) => {
+                Err(Diagnostic::error(Code::UNKNOWN_NAME, format!("nothing is called `{path}`")).at(span, "unknown"))
+            }
+            Err(diagnostic) => Err(diagnostic),
+        })
+    }
+}
+
 impl<'p> Lowering<'p> {
     /// Evaluates as far as it is known now.
     pub fn scalar(&mut self, s: ScopeId, expr: &Expr) -> Result<Scalar> {
@@ -62,7 +85,7 @@ impl<'p> Lowering<'p> {
         let causes = names.causes.into_inner();
         // Arithmetic can fail at other values than these.
         if !matches!(expr.kind, ExprKind::Literal(_) | ExprKind::Name(_)) {
-            self.structural.extend(causes.params.iter().cloned());
+            self.arithmetic.extend(causes.params.iter().cloned());
         }
         let value = match folded.kind {
             ExprKind::Literal(value) => UniformValue::Known(value),
