@@ -77,8 +77,9 @@ fn unrolled(n: usize) -> String {
     let textures: String =
         ["t", "u"].map(|name| format!("\"{name}\": Texture(format: Rgba16Float, size: (64, 64)),\n")).concat();
     let passes = format!(
-        r#"Clear(name: "zero", of: "t"), Repeat(times: {n}, swap: [("t", "u")], passes: [
-        Fullscreen(name: "turn", shader: "filter.wgsl", color: ["u"], bind: {{"src": "t"}}) ]),"#
+        r#"Clear(name: "zero", of: "t"), Repeat(times: {}, swap: [("t", "u")], passes: [
+        Fullscreen(name: "turn", shader: "filter.wgsl", color: ["u"], bind: {{"src": "t"}}) ]),"#,
+        n - 1
     );
     format!("{HEAD} resources: {{ {textures} {} }}, passes: [ {passes} ], outputs: [\"t\"] )", buffers(2 * n))
 }

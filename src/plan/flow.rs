@@ -288,8 +288,3 @@ fn state_rules(lowering: &mut Lowering<'_>) -> Vec<Diagnostic> {
     }
     faults
 }
-
-/// Whether any pass writes the object.
-pub(super) fn writes(flat: &[FlatPass], object: ObjectRef) -> bool {
-    flat.iter().flat_map(|f| &f.pass.accesses).any(|a| a.write && a.object == object)
-}

@@ -60,9 +60,11 @@ fn plan(program: &Program, request: &Request, stand_in: bool) -> Result<Plan, Di
     let unread = if stand_in { unread(&lowering, &outputs) } else { Vec::new() };
     let culled = cull::cull(&mut lowering, &roots);
     // What only culled passes write is said of these.
-    for (object, is_written, diagnostic) in unread {
-        if !is_written || flow::writes(&lowering.flat, object) {
-            warnings.push(diagnostic);
+    let written = written(&lowering);
+    for (object, was_written, diagnostic) in unread {
+        if !was_written || written.contains(&object) {
+            // One to an object: none of them is there already.
+            warnings.0.push(diagnostic);
         }
     }
     let argument_slots = insert::insert(&mut lowering);
@@ -241,14 +243,15 @@ fn unread(lowering: &Lowering<'_>, outputs: &[Output]) -> Vec<(ObjectRef, bool, 
     // What a part puts out is there for whoever wants it.
     for scope in &lowering.scopes {
         for output in &scope.graph.outputs {
-            let resource = scope.graph.resources.iter().position(|r| r.name.value == output.of.value);
-            let var = resource.and_then(|i| scope.resources[i]).filter(|var| *var < lowering.vars.len());
+            let Some(lower::Local::Resource(i)) = scope.locals.get(&output.of.value) else { continue };
+            let var = scope.resources[*i].filter(|var| *var < lowering.vars.len());
             given.extend(var.map(|var| lowering.vars[var].now));
         }
     }
     let attached: BTreeSet<ObjectRef> = lowering.flat.iter().flat_map(|f| attached(&f.pass)).collect();
     let read: BTreeSet<ObjectRef> =
         lowering.flat.iter().flat_map(|f| &f.pass.accesses).filter(|a| a.read).map(|a| a.object).collect();
+    let written = written(lowering);
     for (id, building) in lowering.objects.iter().enumerate() {
         let object = ObjectRef::Fixed(id);
         let of_frame = building.object.origin == model::Origin::Frame;
@@ -257,10 +260,15 @@ fn unread(lowering: &Lowering<'_>, outputs: &[Output]) -> Vec<(ObjectRef, bool, 
             let diagnostic = Diagnostic::warning(Code::NEVER_READ, message)
                 .at(building.object.span, "declared here")
                 .hint("put it among the `outputs`, or leave it and what writes it out");
-            found.push((object, flow::writes(&lowering.flat, object), diagnostic));
+            found.push((object, written.contains(&object), diagnostic));
         }
     }
     found
+}
+
+/// What any pass writes.
+fn written(lowering: &Lowering<'_>) -> BTreeSet<ObjectRef> {
+    lowering.flat.iter().flat_map(|f| &f.pass.accesses).filter(|a| a.write).map(|a| a.object).collect()
 }
 
 /// What a draw uses without a shader that reads it: its depth target, and samples that it resolves.

@@ -17,7 +17,7 @@ mod vars;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::sync::Arc;
 
-pub(super) use names::{Entity, list};
+pub(super) use names::{Entity, Local, list};
 pub(crate) use vars::stand_in_texture;
 
 use super::model::{self, Causes, ObjectId, ObjectRef, Pass, Request, UniformBlock};
@@ -77,7 +77,7 @@ pub(super) struct Scope {
     /// The `Use`s that lead here, outermost first.
     pub trace: Vec<Span>,
     /// What each name declared in this file is.
-    pub locals: HashMap<String, names::Local>,
+    pub locals: HashMap<String, Local>,
     /// Inputs by name to names of the parent.
     pub binds: BTreeMap<String, Name>,
     /// Parameters that the `Use` gave.
