@@ -5,7 +5,7 @@ use std::collections::{BTreeSet, BinaryHeap, HashMap};
 
 use wgpu_types::TextureUsages;
 
-use super::model::{Memory, Object, ObjectId, ObjectKind, Origin, Pass, Slot, Steps, Texture, Unit};
+use super::model::{Memory, Object, ObjectId, ObjectKind, Origin, Slot, Steps, Texture, Unit};
 use crate::format;
 
 /// The bytes of an object as this program counts them: what its texels or items take.
@@ -42,10 +42,11 @@ pub(super) fn lifetimes(objects: &mut [Object], touched: &[Vec<ObjectId>], steps
     }
 }
 
-/// Which objects share memory under both policies. `own` are outputs and what somebody looks at.
+/// Which objects share memory under both policies. `unit_of` and `touched` have the unit and the
+/// objects of each pass; `own` are outputs and what somebody looks at.
 pub(super) fn share(
     objects: &[Object],
-    passes: &[Pass],
+    unit_of: &[usize],
     touched: &[Vec<ObjectId>],
     units: &[Unit],
     own: &BTreeSet<ObjectId>,
@@ -55,7 +56,7 @@ pub(super) fn share(
         .collect();
     let may_always: Vec<bool> = (0..objects.len()).map(|id| !own.contains(&id)).collect();
     let may_keep: Vec<bool> =
-        may_always.iter().zip(same_causes(objects.len(), passes, touched, units)).map(|(a, b)| *a && b).collect();
+        may_always.iter().zip(same_causes(objects.len(), unit_of, touched, units)).map(|(a, b)| *a && b).collect();
     let keep = slots(objects, &of_frame, &may_keep);
     let mut smallest = slots(objects, &of_frame, &may_always);
     // More freedom may lead a greedy choice astray; what may be kept is good enough for both then.
@@ -66,7 +67,7 @@ pub(super) fn share(
         keep,
         smallest,
         unshared: of_frame.iter().map(|id| bytes(&objects[*id].kind)).sum(),
-        lower_bound: lower_bound(objects, &of_frame, own, passes.len()),
+        lower_bound: lower_bound(objects, &of_frame, own, unit_of.len()),
     }
 }
 
@@ -76,13 +77,13 @@ pub fn total(slots: &[Slot]) -> u64 {
 }
 
 /// For each object whether all units that touch it run for the same causes.
-fn same_causes(objects: usize, passes: &[Pass], touched: &[Vec<ObjectId>], units: &[Unit]) -> Vec<bool> {
+fn same_causes(objects: usize, unit_of: &[usize], touched: &[Vec<ObjectId>], units: &[Unit]) -> Vec<bool> {
     let mut first: Vec<Option<usize>> = vec![None; objects];
     let mut same = vec![true; objects];
-    for (pass, ids) in passes.iter().zip(touched) {
+    for (now, ids) in unit_of.iter().zip(touched) {
         for id in ids {
-            let unit = *first[*id].get_or_insert(pass.unit);
-            same[*id] = same[*id] && (unit == pass.unit || units[unit].causes == units[pass.unit].causes);
+            let unit = *first[*id].get_or_insert(*now);
+            same[*id] = same[*id] && (unit == *now || units[unit].causes == units[*now].causes);
         }
     }
     same

@@ -89,18 +89,19 @@ fn finish(
     mut warnings: Diagnostics,
 ) -> Result<Plan, Diagnostics> {
     let mut objects: Vec<Object> = lowering.objects.iter().map(|b| b.object.clone()).collect();
-    let passes: Vec<Pass> = lowering.flat.iter().map(|f| f.pass.clone()).collect();
-    let touched: Vec<Vec<ObjectId>> = passes
+    let unit_of: Vec<usize> = lowering.flat.iter().map(|f| f.pass.unit).collect();
+    let touched: Vec<Vec<ObjectId>> = lowering
+        .flat
         .iter()
-        .map(|pass| {
-            let all: BTreeSet<_> = pass.accesses.iter().flat_map(|a| lowering.object_ids(a.object)).collect();
+        .map(|flat| {
+            let all: BTreeSet<_> = flat.pass.accesses.iter().flat_map(|a| lowering.object_ids(a.object)).collect();
             all.into_iter().collect()
         })
         .collect();
     memory::lifetimes(&mut objects, &touched, &lowering.steps);
     let given = outputs.iter().flat_map(|output| lowering.object_ids(output.object));
     let own: BTreeSet<ObjectId> = roots.iter().copied().chain(given).collect();
-    let memory = memory::share(&objects, &passes, &touched, &units, &own);
+    let memory = memory::share(&objects, &unit_of, &touched, &units, &own);
     let (needs, lacking) = needs::needs(&lowering, &objects);
     if lacking.has_errors() {
         lowering.diagnostics.extend(lacking);
@@ -117,7 +118,7 @@ fn finish(
         objects,
         uniforms: lowering.uniforms,
         samplers: lowering.samplers,
-        passes,
+        passes: lowering.flat.into_iter().map(|flat| flat.pass).collect(),
         culled,
         units,
         rings: lowering.rings,

@@ -75,6 +75,7 @@ fn value(plan: &Plan) -> Json {
         },
         "params": plan.params.iter().map(param).collect::<Vec<_>>(),
         "structural_params": plan.structural,
+        "arithmetic_params": plan.arithmetic,
         "files": plan.taken.iter().map(|(name, path)| (name.clone(), path.display().to_string()))
             .collect::<BTreeMap<_, _>>(),
         "warnings": plan.warnings.iter().map(|d| json!({ "id": d.id.as_str(), "message": d.message }))
