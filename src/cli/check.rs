@@ -60,7 +60,8 @@ fn check_scene(path: &Path, sources: &mut Sources) -> Diagnostics {
     let mut found = loaded.diagnostics;
     if let Some(content) = &loaded.content {
         found.extend(check::check(&content.program));
-        let request = content.request(wgpu_types::Features::all(), wgpu_types::Limits::default(), &BTreeMap::new());
+        let stand_in = check::stand_in(&content.program);
+        let request = content.request(stand_in.features, stand_in.limits, &BTreeMap::new());
         match plan::instantiate(&content.program, &request) {
             Ok(plan) => found.extend(plan.warnings),
             // A warning of the variants that is an error here is told as the error.

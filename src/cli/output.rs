@@ -1,7 +1,6 @@
 //! Files that appear whole or not at all.
 
 use std::fs::{self, File};
-use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 
 use crate::diagnostic::{Code, Diagnostic};
@@ -13,7 +12,6 @@ use crate::diagnostic::{Code, Diagnostic};
 pub struct Output {
     path: PathBuf,
     partial: PathBuf,
-    file: Option<File>,
 }
 
 impl Output {
@@ -34,33 +32,25 @@ impl Output {
             return Err(refuse(&missing).hint(format!("make it with `mkdir -p {}`", folder.display())));
         }
         let partial = folder.join(format!(".{}.{}.part", name.to_string_lossy(), std::process::id()));
-        let file = File::create(&partial).map_err(|error| refuse(&error.to_string()))?;
-        Ok(Self { path: path.to_owned(), partial, file: Some(file) })
+        File::create(&partial).map_err(|error| refuse(&error.to_string()))?;
+        Ok(Self { path: path.to_owned(), partial })
     }
 
     /// Writes everything and puts it in place of what was there.
     ///
     /// # Errors
     /// If the disk is full or the file cannot be replaced; then what was there stays.
-    pub fn write(mut self, bytes: &[u8]) -> Result<(), Diagnostic> {
-        let written = self.finish(bytes);
+    pub fn write(self, bytes: &[u8]) -> Result<(), Diagnostic> {
+        let written = fs::write(&self.partial, bytes).and_then(|()| fs::rename(&self.partial, &self.path));
         written.map_err(|error| {
             Diagnostic::error(Code::OUTPUT, format!("`{}` cannot be written: {error}", self.path.display()))
         })
-    }
-
-    fn finish(&mut self, bytes: &[u8]) -> io::Result<()> {
-        let mut file = self.file.take().ok_or(io::ErrorKind::NotFound)?;
-        file.write_all(bytes)?;
-        drop(file);
-        fs::rename(&self.partial, &self.path)
     }
 }
 
 impl Drop for Output {
     fn drop(&mut self) {
         // After success the name is gone; after a failure there is nobody to tell of another.
-        self.file = None;
         _ = fs::remove_file(&self.partial);
     }
 }

@@ -77,7 +77,8 @@ fn of_scene(args: &PlanArgs, sources: &mut Sources) -> Result<(Plan, Diagnostics
     let loaded = load(&DiskFiles, sources, &job, &mut Cache::default());
     let mut found = loaded.diagnostics;
     let Some(content) = loaded.content else { return Err(found) };
-    let request = content.request(wgpu_types::Features::all(), wgpu_types::Limits::default(), &BTreeMap::new());
+    let stand_in = check::stand_in(&content.program);
+    let request = content.request(stand_in.features, stand_in.limits, &BTreeMap::new());
     let plan = plan::instantiate(&content.program, &request)?;
     found.extend(plan.warnings.clone());
     Ok((plan, found))

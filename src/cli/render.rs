@@ -2,11 +2,12 @@
 
 use std::io::IsTerminal as _;
 use std::path::PathBuf;
+use std::time::Instant;
 
 use indicatif::{ProgressBar, ProgressStyle};
 
 use super::args::RenderArgs;
-use super::dump::{self, Dump};
+use super::dump;
 use super::output::Output;
 use super::report::{Exit, report, say};
 use super::session::{Opening, job, moment, numbered};
@@ -26,12 +27,12 @@ pub fn run(args: &RenderArgs) -> Exit {
 
 /// Everything but saying what was found.
 fn render(args: &RenderArgs, sources: &mut Sources) -> Result<Diagnostics, Diagnostics> {
+    let mut clock = Clock::default();
     let kind = picture_kind(&args.output)?;
     let dumps = dump::parse(&args.dump)?;
     let pictures = pictures(args)?;
-    // Places are made before any work, so that a folder that is not there is told at once.
-    let outputs: Result<Vec<Output>, _> = pictures.iter().map(|(path, _)| Output::reserve(path)).collect();
-    let outputs = outputs?;
+    // The place is made before any work, so that a folder that is not there is told at once.
+    let first = pictures.first().map(|(path, _)| Output::reserve(path)).transpose()?;
     let dumps = dump::reserve(dumps)?;
     let opening = Opening::begin(args.scene.backend.as_deref());
     let mut job = job(&args.scene);
@@ -40,16 +41,54 @@ fn render(args: &RenderArgs, sources: &mut Sources) -> Result<Diagnostics, Diagn
     let loaded = load(&DiskFiles, sources, &job, &mut Cache::default());
     let mut notes = loaded.diagnostics;
     let Some(content) = loaded.content else { return Err(notes) };
-    let mut session = Session::new(opening.wait().map_err(|e| with(&notes, e.into()))?);
+    clock.lap("loading");
+    let gpu = opening.wait().map_err(|e| with(&notes, e.into()))?;
+    clock.lap("waiting for the device");
+    let mut session = Session::new(gpu);
     let built = session.build(content).map_err(|e| with(&notes, e))?;
     notes.extend(built.diagnostics);
-    let drawn = draw(args, kind, &mut session, pictures.into_iter().map(|(_, at)| at).zip(outputs).collect(), dumps);
-    match drawn {
-        Ok(found) => {
-            notes.extend(found);
-            Ok(notes)
+    clock.lap("building");
+    drop(first);
+    let drawn = draw(args, kind, &mut session, &pictures, &mut clock).map_err(|e| with(&notes, e))?;
+    notes.extend(drawn);
+    for dump in dumps {
+        let written = dump.write(&mut session).map_err(|e| with(&notes, e.into()))?;
+        notes.extend(written);
+    }
+    if args.timings {
+        say(&clock.line());
+    }
+    Ok(notes)
+}
+
+/// Where the time of the whole run goes.
+struct Clock {
+    last: Instant,
+    /// Milliseconds.
+    laps: Vec<(&'static str, f64)>,
+}
+
+impl Default for Clock {
+    fn default() -> Self {
+        Self { last: Instant::now(), laps: Vec::new() }
+    }
+}
+
+impl Clock {
+    /// Ends a phase; the same one may come again.
+    fn lap(&mut self, phase: &'static str) {
+        let ms = self.last.elapsed().as_secs_f64() * 1e3;
+        self.last = Instant::now();
+        match self.laps.iter_mut().find(|(known, _)| *known == phase) {
+            Some((_, sum)) => *sum += ms,
+            None => self.laps.push((phase, ms)),
         }
-        Err(found) => Err(with(&notes, found)),
+    }
+
+    fn line(&self) -> String {
+        let laps: Vec<String> = self.laps.iter().map(|(phase, ms)| format!("{phase} {ms:.1}")).collect();
+        let all: f64 = self.laps.iter().map(|(_, ms)| ms).sum();
+        format!("{all:.1} ms in all: {}", laps.join(", "))
     }
 }
 
@@ -83,24 +122,24 @@ fn draw(
     args: &RenderArgs,
     kind: PictureKind,
     session: &mut Session,
-    pictures: Vec<(Moment, Output)>,
-    dumps: Vec<Dump>,
+    pictures: &[(PathBuf, Moment)],
+    clock: &mut Clock,
 ) -> Result<Diagnostics, Diagnostics> {
     let mut notes = Diagnostics::new();
     let bar = progress(pictures.len());
-    for (at, output) in pictures {
-        let drawn = session.draw(at, kind == PictureKind::Png)?;
+    for (path, at) in pictures {
+        let output = Output::reserve(path)?;
+        let drawn = session.draw(*at, kind == PictureKind::Png)?;
         notes.extend(drawn.diagnostics);
+        clock.lap("drawing");
         output.write(&encode(session, kind, args.transparent)?)?;
+        clock.lap("writing");
         if args.timings {
             say(&table::passes(&drawn.reports));
         }
         if let Some(bar) = &bar {
             bar.inc(1);
         }
-    }
-    for dump in dumps {
-        notes.extend(dump.write(session)?);
     }
     Ok(notes)
 }

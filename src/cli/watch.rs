@@ -12,7 +12,7 @@ use crate::diagnostic::{Code, Diagnostic, Diagnostics, Sources};
 use crate::engine::any_device_gone;
 use crate::files::DiskFiles;
 use crate::host::picture::PictureKind;
-use crate::host::{Cache, Job, Moment, Session, load};
+use crate::host::{Cache, Job, Moment, Session, load, renderable};
 use crate::reload::{Change, Watch};
 
 pub fn run(args: &WatchArgs) -> Exit {
@@ -27,6 +27,7 @@ fn watch(args: &WatchArgs) -> Result<std::convert::Infallible, Diagnostics> {
         let message = format!("`{}`: pictures are written as .png or .exr", args.output.display());
         return Err(Diagnostic::error(Code::USAGE, message).into());
     };
+    renderable(&DiskFiles, &args.scene.scene)?;
     // Told at once if the folder is not there; the place is made anew for each picture.
     drop(Output::reserve(&args.output)?);
     let opening = Opening::begin(args.scene.backend.as_deref());

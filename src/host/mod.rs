@@ -19,3 +19,4 @@ pub use build::{Built, Session};
 pub use draw::{Drawn, Moment};
 pub use inputs::Input;
 pub use load::{Content, Job, Loaded, load};
+pub use source::renderable;

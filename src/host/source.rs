@@ -18,7 +18,7 @@ pub(super) struct Source {
 }
 
 /// Whether a path names a scene file by its extension.
-pub(super) fn is_scene(path: &Path) -> bool {
+fn is_scene(path: &Path) -> bool {
     path.extension().is_some_and(|end| end.eq_ignore_ascii_case("ron"))
 }
 
@@ -29,8 +29,7 @@ pub(super) fn read(
     sources: &mut Sources,
     diagnostics: &mut Diagnostics,
 ) -> Option<Source> {
-    let is_particles = particles::known_extension(path);
-    let bytes = match named(files, path) {
+    let bytes = match renderable(files, path) {
         Ok(bytes) => bytes,
         Err(error) => {
             diagnostics.push(error);
@@ -40,15 +39,24 @@ pub(super) fn read(
     if is_scene(path) {
         let scene = scene::read(path, &bytes, sources, diagnostics)?;
         Some(Source { scene, particles: None })
-    } else if is_particles {
+    } else {
         let scene = default_scene(sources, diagnostics)?;
         Some(Source { scene, particles: Some(bytes) })
-    } else {
-        let message = format!("`{}` is neither a scene (.ron) nor a particle file", path.display());
-        let ends = ".vtk, .vtu, .vtp, .ply, .bgeo, .bgeo.gz, .xyz and .csv";
-        diagnostics.push(Diagnostic::error(Code::USAGE, message).hint(format!("particle files end in {ends}")));
-        None
     }
+}
+
+/// The bytes of a file that can be rendered, as far as its name tells.
+///
+/// # Errors
+/// If it is missing, a folder or unreadable, or neither a scene nor a particle file.
+pub fn renderable(files: &dyn Files, path: &Path) -> Result<Arc<[u8]>, Diagnostic> {
+    let bytes = named(files, path)?;
+    if is_scene(path) || particles::known_extension(path) {
+        return Ok(bytes);
+    }
+    let message = format!("`{}` is neither a scene (.ron) nor a particle file", path.display());
+    let ends = ".vtk, .vtu, .vtp, .ply, .bgeo, .bgeo.gz, .xyz and .csv";
+    Err(Diagnostic::error(Code::USAGE, message).hint(format!("particle files end in {ends}")))
 }
 
 /// The scene that the program carries.

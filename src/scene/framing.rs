@@ -13,7 +13,7 @@ pub const FOV_DEGREES: f64 = 40.0;
 const FILL: f64 = 0.86;
 /// Particles outside these quantiles of an axis, widened by `WIDEN` of their distance, are strays.
 const QUANTILE: f64 = 0.005;
-const WIDEN: f64 = 0.15;
+const WIDEN: f64 = 0.25;
 /// More than enough to tell quantiles; keeps framing in fractions of a millisecond.
 const MOST_SAMPLES: usize = 20_000;
 
