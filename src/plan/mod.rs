@@ -22,6 +22,7 @@ use lower::{Entity, Lowering};
 use model::{Causes, Object, ObjectId, ObjectRef, Output, Pass, Plan, Request};
 
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
+use crate::graph::model::{Graph, InputKind};
 use crate::program::Program;
 
 /// Makes a plan (rule 36): flattens, takes branches, unrolls loops, evaluates every expression,
@@ -233,6 +234,24 @@ fn unused(lowering: &Lowering<'_>) -> Diagnostics {
                 found.push(Diagnostic::warning(Code::UNUSED, message).at(name.span, "declared here"));
             }
         }
+        found.extend(unused_attributes(lowering, graph));
+    }
+    found
+}
+
+/// Attributes that no shader binds and no test asks for, in this graph or in a part.
+fn unused_attributes(lowering: &Lowering<'_>, graph: &Graph) -> Diagnostics {
+    let asked = |name: &str| {
+        let mut origins = lowering.objects.iter().map(|building| &building.object.origin);
+        origins.any(|o| matches!(o, model::Origin::Attribute { attribute, .. } if attribute == name))
+    };
+    let mut found = Diagnostics::new();
+    for input in &graph.inputs {
+        let InputKind::Particles { attributes } = &input.kind else { continue };
+        for attribute in attributes.iter().filter(|a| !asked(&a.name.value)) {
+            let message = format!("nothing uses the attribute `{}` of `{}`", attribute.name.value, input.name.value);
+            found.push(Diagnostic::warning(Code::UNUSED, message).at(attribute.name.span, "asked for here"));
+        }
     }
     found
 }
@@ -298,7 +317,7 @@ fn seal_steps(lowering: &mut Lowering<'_>, units: &[model::Unit]) {
             .root
             .inputs
             .iter()
-            .filter(|i| matches!(i.kind, crate::graph::model::InputKind::Camera))
+            .filter(|i| matches!(i.kind, InputKind::Camera))
             .map(|i| i.name.value.clone())
             .collect();
         if lowering.steps[index].rate.is_none() {

@@ -2,17 +2,17 @@
 
 use std::sync::Arc;
 
-use wgpu_types::{BufferUsages, Features, ShaderStages, TextureUsages};
+use wgpu_types::ShaderStages;
 
 use super::names::Entity;
 use super::nodes::{Draft, Viewed};
-use super::{Layout, Lowering, Place, Result, ScopeId, fault, traced};
+use super::{Lowering, Place, Result, ScopeId, fault, traced};
 use crate::diagnostic::{Code, Diagnostic, Label, Span};
-use crate::format::{self, SampleKind, TextureFormat};
+use crate::format::{self, SampleKind};
 use crate::graph::expr::ExprKind;
 use crate::graph::model::{self as ast, Address, Compare, Name, Sampler, Sp};
-use crate::plan::model::{Access, Binding, Bound, ObjectKind, ObjectRef, Origin, ShaderUse, View};
-use crate::shader::reflect::{Entry, Global, GlobalKind, Module, Scalar, TextureDimension, Type, Use};
+use crate::plan::model::{Access, Binding, Bound, ObjectKind, ObjectRef, ShaderUse, View};
+use crate::shader::reflect::{Entry, Global, GlobalKind, Module, TextureDimension, Type, Use};
 
 /// A pass's shader: the module and the entry points that it runs.
 #[derive(Clone)]
@@ -24,11 +24,11 @@ pub(super) struct Stages {
 }
 
 /// One variable of a shader as a pass uses it.
-struct Wanted<'a> {
-    global: &'a Global,
-    stages: ShaderStages,
-    used: Use,
-    filtered: bool,
+pub(super) struct Wanted<'a> {
+    pub global: &'a Global,
+    pub stages: ShaderStages,
+    pub used: Use,
+    pub filtered: bool,
 }
 
 impl Lowering<'_> {
@@ -203,47 +203,7 @@ impl Lowering<'_> {
         Viewed { view, mip_said: false, layer_said: false, causes: building.causes.clone() }
     }
 
-    fn feed_storage(
-        &mut self,
-        s: ScopeId,
-        place: &Feed<'_>,
-        writable: bool,
-        ty: &Type,
-        viewed: &Viewed,
-        draft: &mut Draft,
-    ) -> Result<Bound> {
-        let object = viewed.view.object;
-        if !matches!(self.object(object).object.kind, ObjectKind::Buffer(_)) {
-            return Err(self.mismatch_object(s, place, object));
-        }
-        self.agree(s, place, object, ty)?;
-        let used = place.wanted.used;
-        if used.write
-            && !matches!(self.object(object).object.origin, Origin::Frame | Origin::State(_))
-            && !self.stand_in
-        {
-            return Err(self.writes_input(s, place, object));
-        }
-        for id in self.object_ids(object) {
-            if let ObjectKind::Buffer(buffer) = &mut self.objects[id].object.kind {
-                buffer.usages |= BufferUsages::STORAGE;
-            }
-        }
-        draft.accesses.push(self.access(place, &viewed.view, used, false));
-        Ok(Bound::Storage { buffer: object, writable })
-    }
-
-    fn writes_input(&self, s: ScopeId, place: &Feed<'_>, object: ObjectRef) -> Box<Diagnostic> {
-        let name = &self.object(object).object.path;
-        let message = format!("the shader writes `{name}`, which is an input of the graph");
-        let diagnostic = fault(Code::BINDING_MISMATCH, message, place.at, "written by this pass")
-            .see(place.wanted.global.span, "the shader's variable")
-            .see(self.object(object).object.span, "declared here")
-            .hint("copy it to a resource first");
-        traced(diagnostic, &self.scopes[s].trace)
-    }
-
-    fn access(&self, place: &Feed<'_>, view: &View, used: Use, samples_mips: bool) -> (Access, Place) {
+    pub(super) fn access(&self, place: &Feed<'_>, view: &View, used: Use, samples_mips: bool) -> (Access, Place) {
         let counted = matches!(&self.object(view.object).object.kind, ObjectKind::Buffer(b) if b.counted);
         let access = Access {
             object: view.object,
@@ -261,241 +221,6 @@ impl Lowering<'_> {
             appends: counted && used.write,
         };
         (access, place)
-    }
-
-    /// All shaders that bind a buffer must agree on what it holds.
-    pub(super) fn agree(&mut self, s: ScopeId, place: &Feed<'_>, object: ObjectRef, ty: &Type) -> Result<()> {
-        let global = place.wanted.global;
-        let building = self.object(object);
-        let ObjectKind::Buffer(buffer) = &building.object.kind else { return Ok(()) };
-        let found = if buffer.counted { counted_layout(ty, global.span) } else { plain_layout(ty, global.span) };
-        let Some(mut layout) = found else {
-            let message =
-                format!("`{}` is a counted buffer, and the shader sees `{}`", building.object.path, ty.wgsl());
-            let diagnostic = fault(Code::COUNTED, message, global.span, "the shader's variable")
-                .see(place.at, "fed by this pass")
-                .see(building.object.span, "declared here")
-                .hint("a writer declares `struct { count: atomic<u32>, items: array<T> }`, a reader `count: u32`");
-            return Err(traced(diagnostic, &self.scopes[s].trace));
-        };
-        if let Origin::Attribute { attribute, input, .. } = &building.object.origin {
-            let components = self.attribute_components(input, attribute);
-            layout = self.attribute_layout(s, place, layout, components)?;
-        }
-        if let Some(first) = &building.layout
-            && !(first.header == layout.header && first.stride == layout.stride && same_type(&first.item, &layout.item))
-        {
-            let name = &building.object.path;
-            let message = format!("two shaders disagree about what `{name}` holds");
-            let diagnostic = fault(
-                Code::LAYOUT_DISAGREEMENT,
-                message,
-                global.span,
-                format!("`{}`, {} bytes each", layout.item.wgsl(), layout.stride),
-            )
-            .see(first.span, format!("`{}`, {} bytes each", first.item.wgsl(), first.stride))
-            .see(building.object.span, "declared here")
-            .hint(difference(&first.item, &layout.item));
-            return Err(traced(diagnostic, &self.scopes[s].trace));
-        }
-        let items = fixed_items(ty);
-        if let Some(needed) = items
-            && buffer.items < u64::from(needed)
-            && matches!(building.object.origin, Origin::Frame | Origin::State(_))
-        {
-            let message =
-                format!("the shader needs {needed} items of `{}`, which has {}", building.object.path, buffer.items);
-            let diagnostic = fault(Code::BINDING_MISMATCH, message, global.span, "so many items")
-                .see(building.object.span, "declared here");
-            return Err(traced(diagnostic, &self.scopes[s].trace));
-        }
-        for id in self.object_ids(object) {
-            let building = &mut self.objects[id];
-            let ObjectKind::Buffer(buffer) = &mut building.object.kind else { continue };
-            if building.layout.is_none() {
-                buffer.header = layout.header;
-                buffer.stride = layout.stride;
-                buffer.item = Some(layout.item.clone());
-                building.layout = Some(layout.clone());
-            }
-        }
-        Ok(())
-    }
-
-    fn attribute_components(&self, input: &str, attribute: &str) -> Option<u32> {
-        match self.request.inputs.get(input) {
-            Some(crate::plan::model::InputInfo::Particles { attributes, .. }) => {
-                attributes.iter().find(|(name, _)| name == attribute).map(|(_, n)| *n).filter(|n| *n > 0)
-            }
-            _ => None,
-        }
-    }
-
-    /// Attributes are tightly packed: three numbers take 12 bytes, which `array<vec3<f32>>` does not have.
-    fn attribute_layout(
-        &self,
-        s: ScopeId,
-        place: &Feed<'_>,
-        layout: Layout,
-        components: Option<u32>,
-    ) -> Result<Layout> {
-        let global = place.wanted.global;
-        if let Type::Vector { components: 3, .. } = layout.item {
-            let message =
-                format!("`{}` is tightly packed, 12 bytes each, and `array<vec3<...>>` takes 16", global.name);
-            let diagnostic = fault(Code::BINDING_MISMATCH, message, global.span, "16 bytes each")
-                .see(place.at, "fed by this pass")
-                .hint("import \"lib/packed.wgsl\" and declare `array<Packed3>`");
-            return Err(traced(diagnostic, &self.scopes[s].trace));
-        }
-        let Some(components) = components else { return Ok(layout) };
-        let lanes = lanes(&layout.item);
-        if lanes == Some(components) || lanes == Some(1) {
-            return Ok(layout);
-        }
-        let message = format!(
-            "`{}` has {components} numbers for each particle, and the shader sees `{}`",
-            global.name,
-            layout.item.wgsl()
-        );
-        let diagnostic = fault(Code::BINDING_MISMATCH, message, global.span, "does not fit");
-        let diagnostic = diagnostic.see(place.at, "fed by this pass").hint(match components {
-            1 => "declare `array<f32>`, `array<u32>` or `array<i32>`".to_owned(),
-            3 => "import \"lib/packed.wgsl\" and declare `array<Packed3>`".to_owned(),
-            n => format!("declare `array<vec{n}<f32>>`"),
-        });
-        Err(traced(diagnostic, &self.scopes[s].trace))
-    }
-
-    fn feed_texture(&mut self, s: ScopeId, place: &Feed<'_>, mut viewed: Viewed, draft: &mut Draft) -> Result<Bound> {
-        let GlobalKind::Texture { dimension, multisampled, sample } = place.wanted.global.kind else {
-            return Err(self.mismatch_object(s, place, viewed.view.object));
-        };
-        let object = viewed.view.object;
-        self.adapt(object, dimension, multisampled, stand_in_format(sample), &mut viewed);
-        let ObjectKind::Texture(texture) = self.object(object).object.kind.clone() else {
-            return Err(self.mismatch_object(s, place, object));
-        };
-        if format::sample_kind(texture.format) != sample || (texture.samples > 1) != multisampled {
-            return Err(self.mismatch_object(s, place, object));
-        }
-        self.fit_dimension(s, place, &mut viewed.view, dimension)?;
-        let filtered = place.wanted.filtered && sample == SampleKind::Float;
-        if filtered && !format::is_filterable(texture.format, Features::empty()) {
-            if !format::is_float32(texture.format) {
-                let message = format!("{} cannot be filtered", format::name(texture.format));
-                let diagnostic =
-                    fault(Code::FORMAT, message, place.wanted.global.span, "sampled with a linear sampler")
-                        .see(place.at, "in this pass")
-                        .see(self.object(object).object.span, "declared here")
-                        .hint("use a nearest sampler or `textureLoad`");
-                return Err(traced(diagnostic, &self.scopes[s].trace));
-            }
-            self.features |= Features::FLOAT32_FILTERABLE;
-        }
-        self.texture_usage(object, TextureUsages::TEXTURE_BINDING);
-        let auto = self.object(object).mips_auto && viewed.view.mips.len() > 1;
-        let used = Use { read: true, write: false, ..place.wanted.used };
-        let mut access = self.access(place, &viewed.view, used, auto);
-        // Until the planner has made them, only mip 0 has content.
-        if auto {
-            access.0.mips = 0..viewed.view.mips.end;
-        }
-        draft.accesses.push(access);
-        Ok(Bound::Texture { view: viewed.view, sample, filtered, multisampled })
-    }
-
-    fn feed_storage_texture(
-        &mut self,
-        s: ScopeId,
-        place: &Feed<'_>,
-        mut viewed: Viewed,
-        draft: &mut Draft,
-    ) -> Result<Bound> {
-        let GlobalKind::StorageTexture { dimension, format, read, write } = place.wanted.global.kind else {
-            return Err(self.mismatch_object(s, place, viewed.view.object));
-        };
-        let object = viewed.view.object;
-        self.adapt(object, dimension, false, format, &mut viewed);
-        let ObjectKind::Texture(texture) = self.object(object).object.kind.clone() else {
-            return Err(self.mismatch_object(s, place, object));
-        };
-        if texture.format != format || texture.samples > 1 {
-            return Err(self.mismatch_object(s, place, object));
-        }
-        if !viewed.mip_said {
-            viewed.view.mips = 0..1;
-        }
-        self.fit_dimension(s, place, &mut viewed.view, dimension)?;
-        let storable = format.guaranteed_format_features(Features::empty()).allowed_usages;
-        let read_write = read
-            && write
-            && !matches!(format, TextureFormat::R32Float | TextureFormat::R32Uint | TextureFormat::R32Sint);
-        if !storable.contains(TextureUsages::STORAGE_BINDING) || read_write {
-            self.features |= Features::TEXTURE_ADAPTER_SPECIFIC_FORMAT_FEATURES;
-        }
-        self.texture_usage(object, TextureUsages::STORAGE_BINDING);
-        draft.accesses.push(self.access(place, &viewed.view, place.wanted.used, false));
-        Ok(Bound::StorageTexture { view: viewed.view, format, read, write })
-    }
-
-    pub(super) fn texture_usage(&mut self, object: ObjectRef, usage: TextureUsages) {
-        for id in self.object_ids(object) {
-            if let ObjectKind::Texture(texture) = &mut self.objects[id].object.kind {
-                texture.usages |= usage;
-            }
-        }
-    }
-
-    /// A stand-in for an input takes the shape that the first shader wants.
-    fn adapt(
-        &mut self,
-        object: ObjectRef,
-        dimension: TextureDimension,
-        multisampled: bool,
-        format: TextureFormat,
-        viewed: &mut Viewed,
-    ) {
-        let id = self.object_id(object);
-        let building = &mut self.objects[id];
-        if !building.adapts {
-            return;
-        }
-        let ObjectKind::Texture(texture) = &mut building.object.kind else { return };
-        building.adapts = false;
-        texture.format = format;
-        texture.samples = if multisampled { 4 } else { 1 };
-        texture.is_3d = dimension == TextureDimension::D3;
-        texture.layers = match dimension {
-            TextureDimension::D1 | TextureDimension::D2 => texture.layers,
-            TextureDimension::D2Array => texture.layers.max(2),
-            TextureDimension::Cube => 6,
-            TextureDimension::CubeArray => 12,
-            TextureDimension::D3 => 64,
-        };
-        if !viewed.layer_said {
-            viewed.view.layers = 0..if texture.is_3d { 1 } else { texture.layers };
-        }
-    }
-
-    fn fit_dimension(&self, s: ScopeId, place: &Feed<'_>, view: &mut View, wanted: TextureDimension) -> Result<()> {
-        let ObjectKind::Texture(t) = &self.object(view.object).object.kind else {
-            return Err(self.mismatch_object(s, place, view.object));
-        };
-        let layers = view.layers.len();
-        let fits = match wanted {
-            TextureDimension::D1 => false,
-            TextureDimension::D2 => !t.is_3d && layers == 1,
-            TextureDimension::D2Array => !t.is_3d,
-            TextureDimension::Cube => !t.is_3d && layers == 6 && t.width == t.height,
-            TextureDimension::CubeArray => !t.is_3d && layers.is_multiple_of(6) && t.width == t.height,
-            TextureDimension::D3 => t.is_3d,
-        };
-        if !fits {
-            return Err(self.mismatch_object(s, place, view.object));
-        }
-        view.dimension = wanted;
-        Ok(())
     }
 
     fn feed_sampler(&mut self, s: ScopeId, place: &Feed<'_>, comparison: bool, found: Option<Entity>) -> Result<Bound> {
@@ -547,7 +272,7 @@ impl Lowering<'_> {
         }
     }
 
-    fn mismatch_object(&self, s: ScopeId, place: &Feed<'_>, object: ObjectRef) -> Box<Diagnostic> {
+    pub(super) fn mismatch_object(&self, s: ScopeId, place: &Feed<'_>, object: ObjectRef) -> Box<Diagnostic> {
         let declared = self.object(object).object.span;
         self.mismatched(s, place, &self.describe_object(object), Some(declared))
     }
@@ -596,7 +321,7 @@ impl Lowering<'_> {
 pub(super) struct Feed<'a> {
     pub stages: &'a Stages,
     pub bind: &'a [(Name, ast::Bound)],
-    wanted: &'a Wanted<'a>,
+    pub wanted: &'a Wanted<'a>,
     /// The `bind` entry, else the pass.
     pub at: Span,
 }
@@ -609,89 +334,6 @@ impl Feed<'_> {
 
 pub(super) fn place_of(bind: &[(Name, ast::Bound)], name: &str) -> Option<Span> {
     bind.iter().find(|(n, _)| n.value == name).map(|(n, _)| n.span)
-}
-
-/// `{ count, items }` as counted buffers are seen.
-fn counted_layout(ty: &Type, span: Span) -> Option<Layout> {
-    let Type::Struct { members, .. } = ty else { return None };
-    let [count, items] = members.as_slice() else { return None };
-    let is_count = count.name == "count"
-        && matches!(count.ty, Type::Scalar(Scalar::U32) | Type::Atomic(Scalar::U32))
-        && count.offset == 0;
-    let (offset, stride, item) = items.ty.runtime_array()?;
-    (is_count && items.name == "items").then(|| Layout {
-        header: items.offset + offset,
-        stride,
-        item: item.clone(),
-        span,
-    })
-}
-
-fn plain_layout(ty: &Type, span: Span) -> Option<Layout> {
-    let layout = |header, stride, item: &Type| Some(Layout { header, stride, item: item.clone(), span });
-    match (ty.runtime_array(), ty) {
-        (Some((offset, stride, item)), _) => layout(offset, stride, item),
-        (None, Type::Array { element, stride, .. }) => layout(0, *stride, element),
-        (None, ty) => layout(0, ty.size(), ty),
-    }
-}
-
-/// How many items a type of fixed size takes.
-fn fixed_items(ty: &Type) -> Option<u32> {
-    match ty {
-        Type::Array { count: Some(n), .. } => Some(*n),
-        other if other.runtime_array().is_none() => Some(1),
-        _ => None,
-    }
-}
-
-/// Number of scalars in a tightly packed item: a scalar, a vector, or a struct of scalars.
-fn lanes(ty: &Type) -> Option<u32> {
-    match ty {
-        Type::Scalar(_) | Type::Atomic(_) => Some(1),
-        Type::Vector { components, .. } => Some(*components),
-        Type::Struct { members, size, .. } => {
-            let all_scalars = members.iter().all(|m| matches!(m.ty, Type::Scalar(_)));
-            (all_scalars && *size == 4 * members.len() as u32).then_some(members.len() as u32)
-        }
-        _ => None,
-    }
-}
-
-/// Equal names, offsets and types; `atomic<T>` counts as `T`, struct names do not count.
-pub(super) fn same_type(a: &Type, b: &Type) -> bool {
-    match (a, b) {
-        (Type::Scalar(x) | Type::Atomic(x), Type::Scalar(y) | Type::Atomic(y)) => x == y,
-        (Type::Array { element: x, count: n, stride: p }, Type::Array { element: y, count: m, stride: q }) => {
-            n == m && p == q && same_type(x, y)
-        }
-        (Type::Struct { members: x, size: p, .. }, Type::Struct { members: y, size: q, .. }) => {
-            p == q
-                && x.len() == y.len()
-                && x.iter().zip(y).all(|(m, n)| m.name == n.name && m.offset == n.offset && same_type(&m.ty, &n.ty))
-        }
-        _ => a == b,
-    }
-}
-
-/// Where two item types differ, as a hint.
-fn difference(a: &Type, b: &Type) -> String {
-    if let (Type::Struct { members: x, .. }, Type::Struct { members: y, .. }) = (a, b) {
-        for (m, n) in x.iter().zip(y) {
-            if m.name != n.name || m.offset != n.offset || !same_type(&m.ty, &n.ty) {
-                return format!(
-                    "one has `{}: {}` at byte {}, the other `{}: {}` at byte {}",
-                    n.name,
-                    n.ty.wgsl(),
-                    n.offset,
-                    m.name,
-                    m.ty.wgsl(),
-                    m.offset
-                );
-            }
-        }
-    }
-    "declare the item's type once, in a module that both import".to_owned()
 }
 
 /// What a shader's variable wants, for messages.
@@ -723,15 +365,6 @@ pub(super) fn describe(kind: &GlobalKind) -> String {
         GlobalKind::Sampler { comparison: true } => "a comparison sampler".to_owned(),
         GlobalKind::Sampler { comparison: false } => "a sampler".to_owned(),
         GlobalKind::Other(what) => what.clone(),
-    }
-}
-
-fn stand_in_format(sample: SampleKind) -> TextureFormat {
-    match sample {
-        SampleKind::Float => TextureFormat::Rgba16Float,
-        SampleKind::Sint => TextureFormat::R32Sint,
-        SampleKind::Uint => TextureFormat::R32Uint,
-        SampleKind::Depth => TextureFormat::Depth32Float,
     }
 }
 

@@ -6,11 +6,15 @@
 //! asks for them, so the order of declarations does not matter.
 
 mod bind;
+mod buffers;
 mod draw;
 mod extent;
+mod inputs;
 mod names;
 mod nodes;
 mod scalars;
+mod targets;
+mod textures;
 mod uniform;
 mod vars;
 

@@ -3,13 +3,14 @@
 use std::collections::{BTreeMap, HashMap};
 use std::sync::Arc;
 
+use super::inputs::input_fields;
 use super::{LetState, Lowering, Result, Scalar, Scope, ScopeId, VarId, fault, traced};
 use crate::diagnostic::{Code, Diagnostic, Span};
 use crate::graph::expr::{Expr, ExprKind};
-use crate::graph::model::{Attribute, Graph, InputKind, Name, Node, NodeKind, Use};
+use crate::graph::model::{Graph, InputKind, Name, Node, NodeKind, Use};
 use crate::graph::value::Value;
 use crate::plan::fields;
-use crate::plan::model::{Causes, InputInfo, UniformValue};
+use crate::plan::model::{Causes, UniformValue};
 
 /// How many names may lead to one another: parts in parts, and `let` names of `let` names.
 const MAX_DEPTH: usize = 64;
@@ -351,7 +352,9 @@ impl Lowering<'_> {
                 );
                 continue;
             };
-            let result = self.scalar(s, expr).and_then(|scalar| self.fit(scalar, param, expr.span));
+            let result = self.scalar(s, expr).and_then(|scalar| {
+                self.fit(scalar, param, expr.span).map_err(|fault| traced(*fault, &self.scopes[s].trace))
+            });
             if let Some(scalar) = self.report(result) {
                 given.insert(name.value.clone(), (scalar, expr.span));
             }
@@ -364,216 +367,12 @@ impl Lowering<'_> {
             // program order, here only what is asked for before that is forgotten.
         }
     }
-
-    /// What an input, or a field of it, stands for: the thing outside that feeds it.
-    fn input(&mut self, s: ScopeId, i: usize, field: Option<&str>, span: Span) -> Result<Entity> {
-        let graph = self.scopes[s].graph.clone();
-        let input = &graph.inputs[i];
-        self.used.insert(input.name.span);
-        let outer = match self.scopes[s].parent {
-            None => {
-                let attributes = attributes(&input.kind);
-                return self.root_input(s, i, attributes, field, span);
-            }
-            Some(parent) => match self.scopes[s].binds.get(&input.name.value).cloned() {
-                Some(bound) => self.resolve(parent, &bound.value, bound.span)?,
-                None if self.scopes[parent].locals.contains_key(&input.name.value) => {
-                    self.resolve(parent, &input.name.value, span)?
-                }
-                None if input.optional => Entity::Absent,
-                None => return Err(self.missing_input(s, i)),
-            },
-        };
-        match (outer, field) {
-            (entity, None) => Ok(entity),
-            (Entity::Input { root, .. }, Some(field)) => {
-                let root_graph = self.program.root.clone();
-                let index = root_graph.inputs.iter().position(|i| i.name.value == root);
-                match index {
-                    Some(index) => self.root_input(s, index, attributes(&input.kind), Some(field), span),
-                    None => Err(self.unknown(s, field, span)),
-                }
-            }
-            (Entity::Absent, Some(_)) => Err(self.absent(s, i, span)),
-            (entity, Some(field)) => {
-                let message = format!("`{}` has no field `{field}`: it is {}", input.name.value, entity.what());
-                Err(traced(fault(Code::WRONG_KIND, message, span, "no such field"), &self.scopes[s].trace))
-            }
-        }
-    }
-
-    pub(super) fn missing_input(&self, s: ScopeId, i: usize) -> Box<Diagnostic> {
-        let input = &self.scopes[s].graph.inputs[i];
-        let message = format!("nothing feeds the input `{}` ({})", input.name.value, input.kind.name());
-        let mut diagnostic = Diagnostic::error(Code::MISSING_INPUT, message);
-        diagnostic = match self.scopes[s].trace.last() {
-            Some(used) => diagnostic.at(*used, "used here").see(input.name.span, "the input"),
-            None => diagnostic.at(input.name.span, "the input"),
-        };
-        let hint = match self.scopes[s].parent {
-            Some(_) => format!(
-                "where the part is used, declare something called `{0}` or say `bind: {{\"{0}\": \"...\"}}`",
-                input.name.value
-            ),
-            None => format!("give the scene an item called `{}`", input.name.value),
-        };
-        Box::new(diagnostic.hint(hint))
-    }
-
-    pub(super) fn absent(&self, s: ScopeId, i: usize, span: Span) -> Box<Diagnostic> {
-        let input = &self.scopes[s].graph.inputs[i];
-        let name = &input.name.value;
-        let diagnostic =
-            fault(Code::OPTIONAL_INPUT, format!("the optional input `{name}` may be absent here"), span, "needs it")
-                .see(input.name.span, "declared optional")
-                .hint(format!("put what needs it inside `If(test: \"has({name})\", then: [...])`"));
-        traced(diagnostic, &self.scopes[s].trace)
-    }
-
-    /// As [`Self::absent`], for a name of the scope that leads to such an input.
-    pub(super) fn absent_here(&self, s: ScopeId, name: &str, span: Span) -> Box<Diagnostic> {
-        let input = self.scopes[s].graph.inputs.iter().position(|i| i.name.value == name);
-        match input {
-            Some(i) if self.scopes[s].graph.inputs[i].optional => self.absent(s, i, span),
-            _ => {
-                let message = format!("the optional input `{name}` may be absent here");
-                let diagnostic = fault(Code::OPTIONAL_INPUT, message, span, "needs it")
-                    .hint("put what needs it inside `If(test: \"has(...)\", then: [...])`");
-                traced(diagnostic, &self.scopes[s].trace)
-            }
-        }
-    }
-
-    /// An input of the root: what the request says of it.
-    /// `attributes` are those that the asking graph declares.
-    fn root_input(
-        &mut self,
-        s: ScopeId,
-        i: usize,
-        attributes: &[Attribute],
-        field: Option<&str>,
-        span: Span,
-    ) -> Result<Entity> {
-        let graph = self.program.root.clone();
-        let input = &graph.inputs[i];
-        self.used.insert(input.name.span);
-        let name = input.name.value.clone();
-        let info = self.request.inputs.get(&name).cloned();
-        if info.is_none() && (input.optional || !self.stand_in) {
-            return match (input.optional, field) {
-                (true, None) => Ok(Entity::Absent),
-                (true, Some(_)) => Err(self.absent(0, i, span)),
-                (false, _) => Err(self.missing_input(0, i)),
-            };
-        }
-        let table = match &input.kind {
-            InputKind::Camera => fields::CAMERA,
-            InputKind::Light => fields::LIGHT,
-            InputKind::Pointer => fields::POINTER,
-            InputKind::Particles { .. } => return self.particles(s, i, attributes, info, field, span),
-            _ => return Ok(Entity::Var(self.input_var(&name, i, info)?)),
-        };
-        match field {
-            None => Ok(Entity::Input { root: name, kind: input.kind.clone() }),
-            Some(field) if table.iter().any(|(known, _)| *known == field) => {
-                Ok(Entity::Scalar(live(&format!("{name}.{field}"), span)))
-            }
-            Some(field) => Err(self.unknown_field(s, &name, field, table, span)),
-        }
-    }
-
-    pub(super) fn unknown_field(
-        &self,
-        s: ScopeId,
-        name: &str,
-        field: &str,
-        table: &[(&str, fields::FieldType)],
-        span: Span,
-    ) -> Box<Diagnostic> {
-        let names: Vec<String> = table.iter().map(|(known, _)| (*known).to_owned()).collect();
-        let diagnostic = fault(Code::UNKNOWN_NAME, format!("`{name}` has no field `{field}`"), span, "unknown field")
-            .nearest(field, names.iter().map(String::as_str))
-            .hint(format!("its fields are {}", list(&names)));
-        traced(diagnostic, &self.scopes[s].trace)
-    }
-
-    fn particles(
-        &mut self,
-        s: ScopeId,
-        i: usize,
-        declared: &[Attribute],
-        info: Option<InputInfo>,
-        field: Option<&str>,
-        span: Span,
-    ) -> Result<Entity> {
-        let graph = self.program.root.clone();
-        let input = &graph.inputs[i];
-        let name = input.name.value.clone();
-        let Some(InputInfo::Particles { count, radius, min, max, attributes }) = info else {
-            if info.is_none() {
-                return Err(self.missing_input(0, i));
-            }
-            let message = format!("the input `{name}` wants Particles, and is fed something else");
-            return Err(Box::new(fault(Code::WRONG_KIND, message, input.name.span, "declared here")));
-        };
-        let Some(field) = field else { return Ok(Entity::Input { root: name, kind: input.kind.clone() }) };
-        let value = match field {
-            "count" => Value::Int(i64::try_from(count).unwrap_or(i64::MAX)),
-            "radius" => Value::Float(radius),
-            "min" => Value::vec(min),
-            "max" => Value::vec(max),
-            attribute => {
-                let Some(declaration) = declared.iter().find(|a| a.name.value == attribute) else {
-                    return Err(self.unknown_field(s, &name, field, fields::PARTICLES, span));
-                };
-                let present = attributes.iter().find(|(known, _)| known == attribute);
-                if present.is_none() && !declaration.optional {
-                    let names: Vec<String> = attributes.iter().map(|(known, _)| known.clone()).collect();
-                    let message = format!("the particles have no attribute `{attribute}`");
-                    let diagnostic = fault(Code::MISSING_INPUT, message, declaration.name.span, "asked for here")
-                        .hint(format!("they have {}; `\"{attribute}?\"` makes it optional", list(&names)));
-                    return Err(Box::new(diagnostic));
-                }
-                return Ok(Entity::Var(self.attribute_var(&name, attribute, count, present.is_some(), input.span)));
-            }
-        };
-        let causes = Causes { inputs: [name].into(), ..Causes::default() };
-        Ok(Entity::Scalar(Scalar { value: UniformValue::Known(value), causes }))
-    }
 }
 
 /// Something that is known only while a frame runs.
 pub(super) fn live(name: &str, span: Span) -> Scalar {
     let causes = Causes { live: [name.to_owned()].into(), ..Causes::default() };
     Scalar::live(Expr { kind: ExprKind::Name(name.to_owned()), span }, causes)
-}
-
-/// The fields of an input of a kind: what follows its name and a dot.
-pub(super) fn input_fields(kind: &InputKind) -> impl Iterator<Item = &str> {
-    let (table, attributes): (&[(&str, fields::FieldType)], &[Attribute]) = match kind {
-        InputKind::Camera => (fields::CAMERA, &[]),
-        InputKind::Light => (fields::LIGHT, &[]),
-        InputKind::Pointer => (fields::POINTER, &[]),
-        InputKind::Particles { attributes } => (fields::PARTICLES, attributes),
-        _ => (&[], &[]),
-    };
-    table.iter().map(|(name, _)| *name).chain(attributes.iter().map(|a| a.name.value.as_str()))
-}
-
-/// `its inputs are a and b`.
-fn inputs_of(graph: &Graph) -> String {
-    let names: Vec<String> = graph.inputs.iter().map(|i| i.name.value.clone()).collect();
-    match names.as_slice() {
-        [] => "it has no inputs".to_owned(),
-        names => format!("its inputs are {}", list(names)),
-    }
-}
-
-fn attributes(kind: &InputKind) -> &[Attribute] {
-    match kind {
-        InputKind::Particles { attributes } => attributes,
-        _ => &[],
-    }
 }
 
 pub(super) fn join(path: &str, name: &str) -> String {
@@ -635,5 +434,14 @@ fn uses(nodes: &[Node], tests: &mut Vec<Test>, visit: &mut dyn FnMut(&Use, &[Tes
             }
             _ => {}
         }
+    }
+}
+
+/// `its inputs are a and b`.
+fn inputs_of(graph: &Graph) -> String {
+    let names: Vec<String> = graph.inputs.iter().map(|i| i.name.value.clone()).collect();
+    match names.as_slice() {
+        [] => "it has no inputs".to_owned(),
+        names => format!("its inputs are {}", list(names)),
     }
 }

@@ -3,7 +3,8 @@
 use wgpu_types::BufferUsages;
 
 use super::bind::{Feed, Stages, place_of};
-use super::names::{Entity, input_fields};
+use super::inputs::input_fields;
+use super::names::Entity;
 use super::nodes::{Draft, shown};
 use super::{Lowering, Result, Scalar, ScopeId, fault, traced};
 use crate::diagnostic::{Code, Diagnostic, Span};

@@ -5,12 +5,12 @@ use wgpu_types::{BufferUsages, TextureUsages};
 use super::names::{Entity, join};
 use super::nodes::amount;
 use super::{Building, Lowering, Result, ScopeId, Var, VarId, fault, traced};
-use crate::diagnostic::{Code, Diagnostic, Span};
+use crate::diagnostic::{Code, Span};
 use crate::format::{self, TextureFormat};
 use crate::graph::expr::Expr;
-use crate::graph::model::{InputKind, Mips, ResourceKind, Sp, ViewDimension};
+use crate::graph::model::{Mips, ResourceKind, Sp, ViewDimension};
 use crate::graph::value::Value;
-use crate::plan::model::{Buffer, Causes, InputInfo, Object, ObjectKind, ObjectRef, Origin, Texture};
+use crate::plan::model::{Buffer, Causes, Object, ObjectKind, ObjectRef, Origin, Texture};
 
 /// No device has larger textures; layers are tracked one by one.
 const MAX_EDGE: i64 = 65_536;
@@ -209,142 +209,6 @@ impl Lowering<'_> {
         Ok((ObjectKind::Texture(texture), auto, causes))
     }
 
-    /// The variable of a root input that is memory: texture, buffer, counted, table.
-    pub(super) fn input_var(&mut self, name: &str, i: usize, info: Option<InputInfo>) -> Result<VarId> {
-        if let Some(var) = self.input_vars.get(name) {
-            return Ok(*var);
-        }
-        let graph = self.program.root.clone();
-        let input = &graph.inputs[i];
-        let counted = matches!(input.kind, InputKind::Counted);
-        let kind = match (&input.kind, info) {
-            (InputKind::Texture { .. }, Some(InputInfo::Texture(texture))) => ObjectKind::Texture(texture),
-            (InputKind::Texture { dimension }, None) if self.stand_in => {
-                ObjectKind::Texture(stand_in_texture(dimension.as_ref().map(|d| d.value)))
-            }
-            (InputKind::Buffer | InputKind::Counted, Some(InputInfo::Buffer { items, stride })) => {
-                let mut kind = buffer(items, counted);
-                if let ObjectKind::Buffer(b) = &mut kind {
-                    b.stride = stride;
-                }
-                kind
-            }
-            (InputKind::Table, Some(InputInfo::Table { rows })) => buffer(rows.len() as u64, false),
-            (InputKind::Buffer | InputKind::Counted | InputKind::Table, None) if self.stand_in => buffer(1000, counted),
-            (kind, Some(_)) => {
-                let message = format!("the input `{name}` wants {}, and is fed something else", wanted(kind));
-                return Err(Box::new(fault(Code::WRONG_KIND, message, input.name.span, "declared here")));
-            }
-            (_, None) => return Err(self.missing_input(0, i)),
-        };
-        let causes = Causes { inputs: [name.to_owned()].into(), ..Causes::default() };
-        let object = Object {
-            path: name.to_owned(),
-            kind,
-            origin: Origin::Input(name.to_owned()),
-            lifetime: None,
-            span: input.name.span,
-        };
-        let building = Building { object, layout: None, mips_auto: false, adapts: self.stand_in, causes };
-        let var = self.add_var(building);
-        self.input_vars.insert(name.to_owned(), var);
-        Ok(var)
-    }
-
-    pub(super) fn attribute_var(
-        &mut self,
-        input: &str,
-        attribute: &str,
-        count: u64,
-        present: bool,
-        span: Span,
-    ) -> VarId {
-        let path = format!("{input}.{attribute}");
-        if let Some(var) = self.input_vars.get(&path) {
-            return *var;
-        }
-        let causes = Causes { inputs: [input.to_owned()].into(), ..Causes::default() };
-        let object = Object {
-            path: path.clone(),
-            kind: buffer(count, false),
-            origin: Origin::Attribute { input: input.to_owned(), attribute: attribute.to_owned(), present },
-            lifetime: None,
-            span,
-        };
-        let var = self.add_var(Building { object, layout: None, mips_auto: false, adapts: false, causes });
-        self.input_vars.insert(path, var);
-        var
-    }
-
-    /// Checks that every input of a graph instance is fed by the right kind of thing.
-    /// Tells whether all are.
-    pub(super) fn check_inputs(&mut self, s: ScopeId) -> bool {
-        let mut all_fit = true;
-        let graph = self.scopes[s].graph.clone();
-        for (i, input) in graph.inputs.iter().enumerate() {
-            // Asking for it must not count as a use.
-            let used = self.used.contains(&input.name.span);
-            let fed = self.resolve(s, &input.name.value, input.name.span);
-            if !used {
-                self.used.remove(&input.name.span);
-            }
-            let Some(entity) = self.report(fed) else {
-                all_fit = false;
-                continue;
-            };
-            if self.scopes[s].parent.is_none() {
-                continue;
-            }
-            if matches!(entity, Entity::Absent) && !input.optional {
-                all_fit = false;
-                let diagnostic = self.absent_fed(s, i);
-                self.diagnostics.push(diagnostic);
-            } else if !self.fits_input(&entity, &input.kind) {
-                all_fit = false;
-                let fed = self.what(&entity);
-                let name = &input.name.value;
-                let message = format!("the input `{name}` wants {}, and is fed {fed}", wanted(&input.kind));
-                let bound = self.scopes[s].binds.get(name).map(|n| n.span);
-                let at = bound.or(self.scopes[s].trace.last().copied()).unwrap_or(input.name.span);
-                self.diagnostics
-                    .push(fault(Code::WRONG_KIND, message, at, "fed here").see(input.name.span, "declared here"));
-            }
-        }
-        all_fit
-    }
-
-    fn absent_fed(&self, s: ScopeId, i: usize) -> Diagnostic {
-        let input = &self.scopes[s].graph.inputs[i];
-        let name = &input.name.value;
-        let at = self.scopes[s].trace.last().copied().unwrap_or(input.name.span);
-        let message = format!("the part needs `{name}`, and what feeds it may be absent");
-        fault(Code::OPTIONAL_INPUT, message, at, "used here")
-            .see(input.name.span, "not optional here")
-            .hint("use the part inside `If(test: \"has(...)\", then: [...])`, or make its input optional")
-    }
-
-    fn fits_input(&self, entity: &Entity, kind: &InputKind) -> bool {
-        let object = match entity {
-            Entity::Var(var) => Some(&self.object(self.vars[*var].now).object.kind),
-            _ => None,
-        };
-        match (kind, entity, object) {
-            (_, Entity::Absent, _) => true,
-            (InputKind::Camera, Entity::Input { kind: InputKind::Camera, .. }, _)
-            | (InputKind::Light, Entity::Input { kind: InputKind::Light, .. }, _)
-            | (InputKind::Pointer, Entity::Input { kind: InputKind::Pointer, .. }, _)
-            | (InputKind::Particles { .. }, Entity::Input { kind: InputKind::Particles { .. }, .. }, _) => true,
-            // A camera or light that a shader wrote.
-            (InputKind::Camera | InputKind::Light, Entity::Var(_), Some(ObjectKind::Buffer(b))) => !b.counted,
-            (InputKind::Texture { dimension }, Entity::Var(_), Some(ObjectKind::Texture(texture))) => {
-                dimension.as_ref().is_none_or(|d| has_dimension(texture, d.value))
-            }
-            (InputKind::Buffer | InputKind::Table, Entity::Var(_), Some(ObjectKind::Buffer(b))) => !b.counted,
-            (InputKind::Counted, Entity::Var(_), Some(ObjectKind::Buffer(b))) => b.counted,
-            _ => false,
-        }
-    }
-
     /// What an entity is, more exactly than [`Entity::what`].
     pub(super) fn what(&self, entity: &Entity) -> String {
         match entity {
@@ -371,37 +235,7 @@ impl Lowering<'_> {
     }
 }
 
-/// What an input wants, with its article.
-fn wanted(kind: &InputKind) -> String {
-    let dimension = match kind {
-        InputKind::Texture { dimension: Some(d) } => match d.value {
-            ViewDimension::D2 => "2D ",
-            ViewDimension::D2Array => "2D array ",
-            ViewDimension::Cube => "cube ",
-            ViewDimension::CubeArray => "cube array ",
-            ViewDimension::D3 => "3D ",
-        },
-        _ => "",
-    };
-    match kind {
-        InputKind::Particles { .. } => "Particles".to_owned(),
-        other => format!("a {dimension}{}", other.name()),
-    }
-}
-
-/// Whether a texture can be seen so.
-fn has_dimension(texture: &Texture, dimension: ViewDimension) -> bool {
-    let is_square = texture.width == texture.height;
-    match dimension {
-        ViewDimension::D3 => texture.is_3d,
-        ViewDimension::D2 => !texture.is_3d && texture.layers == 1,
-        ViewDimension::D2Array => !texture.is_3d,
-        ViewDimension::Cube => !texture.is_3d && texture.layers == 6 && is_square,
-        ViewDimension::CubeArray => !texture.is_3d && texture.layers.is_multiple_of(6) && is_square,
-    }
-}
-
-fn buffer(items: u64, counted: bool) -> ObjectKind {
+pub(super) fn buffer(items: u64, counted: bool) -> ObjectKind {
     let header = if counted { 4 } else { 0 };
     ObjectKind::Buffer(Buffer { stride: 4, items, header, counted, item: None, usages: BufferUsages::empty() })
 }

@@ -1,0 +1,373 @@
+//! Inputs of a graph instance: what feeds them, their fields, and whether it fits.
+
+use super::names::{Entity, list, live};
+use super::vars::{buffer, stand_in_texture};
+use super::{Building, Lowering, Result, Scalar, ScopeId, VarId, fault, traced};
+use crate::diagnostic::{Code, Diagnostic, Span};
+use crate::graph::model::{Attribute, InputKind, ViewDimension};
+use crate::graph::value::Value;
+use crate::plan::fields;
+use crate::plan::model::{Causes, InputInfo, Object, ObjectKind, Origin, Texture, UniformValue};
+
+impl Lowering<'_> {
+    /// What an input, or a field of it, stands for: the thing outside that feeds it.
+    pub(super) fn input(&mut self, s: ScopeId, i: usize, field: Option<&str>, span: Span) -> Result<Entity> {
+        let graph = self.scopes[s].graph.clone();
+        let input = &graph.inputs[i];
+        self.used.insert(input.name.span);
+        let outer = match self.scopes[s].parent {
+            None => {
+                let attributes = attributes(&input.kind);
+                return self.root_input(s, i, attributes, field, span);
+            }
+            Some(parent) => match self.scopes[s].binds.get(&input.name.value).cloned() {
+                Some(bound) => self.resolve(parent, &bound.value, bound.span)?,
+                None if self.scopes[parent].locals.contains_key(&input.name.value) => {
+                    self.resolve(parent, &input.name.value, span)?
+                }
+                None if input.optional => Entity::Absent,
+                None => return Err(self.missing_input(s, i)),
+            },
+        };
+        match (outer, field) {
+            (entity, None) => Ok(entity),
+            (Entity::Input { root, .. }, Some(field)) => {
+                let root_graph = self.program.root.clone();
+                let index = root_graph.inputs.iter().position(|i| i.name.value == root);
+                match index {
+                    Some(index) => self.root_input(s, index, attributes(&input.kind), Some(field), span),
+                    None => Err(self.unknown(s, field, span)),
+                }
+            }
+            (Entity::Absent, Some(_)) => Err(self.absent(s, i, span)),
+            (entity, Some(field)) => {
+                let message = format!("`{}` has no field `{field}`: it is {}", input.name.value, entity.what());
+                Err(traced(fault(Code::WRONG_KIND, message, span, "no such field"), &self.scopes[s].trace))
+            }
+        }
+    }
+
+    pub(super) fn missing_input(&self, s: ScopeId, i: usize) -> Box<Diagnostic> {
+        let input = &self.scopes[s].graph.inputs[i];
+        let message = format!("nothing feeds the input `{}` ({})", input.name.value, input.kind.name());
+        let mut diagnostic = Diagnostic::error(Code::MISSING_INPUT, message);
+        diagnostic = match self.scopes[s].trace.last() {
+            Some(used) => diagnostic.at(*used, "used here").see(input.name.span, "the input"),
+            None => diagnostic.at(input.name.span, "the input"),
+        };
+        let hint = match self.scopes[s].parent {
+            Some(_) => format!(
+                "where the part is used, declare something called `{0}` or say `bind: {{\"{0}\": \"...\"}}`",
+                input.name.value
+            ),
+            None => format!("give the scene an item called `{}`", input.name.value),
+        };
+        Box::new(diagnostic.hint(hint))
+    }
+
+    pub(super) fn absent(&self, s: ScopeId, i: usize, span: Span) -> Box<Diagnostic> {
+        let input = &self.scopes[s].graph.inputs[i];
+        let name = &input.name.value;
+        let diagnostic =
+            fault(Code::OPTIONAL_INPUT, format!("the optional input `{name}` may be absent here"), span, "needs it")
+                .see(input.name.span, "declared optional")
+                .hint(format!("put what needs it inside `If(test: \"has({name})\", then: [...])`"));
+        traced(diagnostic, &self.scopes[s].trace)
+    }
+
+    /// As [`Self::absent`], for a name of the scope that leads to such an input.
+    pub(super) fn absent_here(&self, s: ScopeId, name: &str, span: Span) -> Box<Diagnostic> {
+        let input = self.scopes[s].graph.inputs.iter().position(|i| i.name.value == name);
+        match input {
+            Some(i) if self.scopes[s].graph.inputs[i].optional => self.absent(s, i, span),
+            _ => {
+                let message = format!("the optional input `{name}` may be absent here");
+                let diagnostic = fault(Code::OPTIONAL_INPUT, message, span, "needs it")
+                    .hint("put what needs it inside `If(test: \"has(...)\", then: [...])`");
+                traced(diagnostic, &self.scopes[s].trace)
+            }
+        }
+    }
+
+    /// An input of the root: what the request says of it.
+    /// `attributes` are those that the asking graph declares.
+    fn root_input(
+        &mut self,
+        s: ScopeId,
+        i: usize,
+        attributes: &[Attribute],
+        field: Option<&str>,
+        span: Span,
+    ) -> Result<Entity> {
+        let graph = self.program.root.clone();
+        let input = &graph.inputs[i];
+        self.used.insert(input.name.span);
+        let name = input.name.value.clone();
+        let info = self.request.inputs.get(&name).cloned();
+        if info.is_none() && (input.optional || !self.stand_in) {
+            return match (input.optional, field) {
+                (true, None) => Ok(Entity::Absent),
+                (true, Some(_)) => Err(self.absent(0, i, span)),
+                (false, _) => Err(self.missing_input(0, i)),
+            };
+        }
+        let table = match &input.kind {
+            InputKind::Camera => fields::CAMERA,
+            InputKind::Light => fields::LIGHT,
+            InputKind::Pointer => fields::POINTER,
+            InputKind::Particles { .. } => return self.particles(s, i, attributes, info, field, span),
+            _ => return Ok(Entity::Var(self.input_var(&name, i, info)?)),
+        };
+        match field {
+            None => Ok(Entity::Input { root: name, kind: input.kind.clone() }),
+            Some(field) if table.iter().any(|(known, _)| *known == field) => {
+                Ok(Entity::Scalar(live(&format!("{name}.{field}"), span)))
+            }
+            Some(field) => Err(self.unknown_field(s, &name, field, table, span)),
+        }
+    }
+
+    pub(super) fn unknown_field(
+        &self,
+        s: ScopeId,
+        name: &str,
+        field: &str,
+        table: &[(&str, fields::FieldType)],
+        span: Span,
+    ) -> Box<Diagnostic> {
+        let names: Vec<String> = table.iter().map(|(known, _)| (*known).to_owned()).collect();
+        let diagnostic = fault(Code::UNKNOWN_NAME, format!("`{name}` has no field `{field}`"), span, "unknown field")
+            .nearest(field, names.iter().map(String::as_str))
+            .hint(format!("its fields are {}", list(&names)));
+        traced(diagnostic, &self.scopes[s].trace)
+    }
+
+    fn particles(
+        &mut self,
+        s: ScopeId,
+        i: usize,
+        declared: &[Attribute],
+        info: Option<InputInfo>,
+        field: Option<&str>,
+        span: Span,
+    ) -> Result<Entity> {
+        let graph = self.program.root.clone();
+        let input = &graph.inputs[i];
+        let name = input.name.value.clone();
+        let Some(InputInfo::Particles { count, radius, min, max, attributes }) = info else {
+            if info.is_none() {
+                return Err(self.missing_input(0, i));
+            }
+            let message = format!("the input `{name}` wants Particles, and is fed something else");
+            return Err(Box::new(fault(Code::WRONG_KIND, message, input.name.span, "declared here")));
+        };
+        let Some(field) = field else { return Ok(Entity::Input { root: name, kind: input.kind.clone() }) };
+        let value = match field {
+            "count" => Value::Int(i64::try_from(count).unwrap_or(i64::MAX)),
+            "radius" => Value::Float(radius),
+            "min" => Value::vec(min),
+            "max" => Value::vec(max),
+            attribute => {
+                let Some(declaration) = declared.iter().find(|a| a.name.value == attribute) else {
+                    return Err(self.unknown_field(s, &name, field, fields::PARTICLES, span));
+                };
+                let present = attributes.iter().find(|(known, _)| known == attribute);
+                if present.is_none() && !declaration.optional {
+                    let names: Vec<String> = attributes.iter().map(|(known, _)| known.clone()).collect();
+                    let message = format!("the particles have no attribute `{attribute}`");
+                    let diagnostic = fault(Code::MISSING_INPUT, message, declaration.name.span, "asked for here")
+                        .hint(format!("they have {}; `\"{attribute}?\"` makes it optional", list(&names)));
+                    return Err(Box::new(diagnostic));
+                }
+                return Ok(Entity::Var(self.attribute_var(&name, attribute, count, present.is_some(), input.span)));
+            }
+        };
+        let causes = Causes { inputs: [name].into(), ..Causes::default() };
+        Ok(Entity::Scalar(Scalar { value: UniformValue::Known(value), causes }))
+    }
+
+    /// The variable of a root input that is memory: texture, buffer, counted, table.
+    pub(super) fn input_var(&mut self, name: &str, i: usize, info: Option<InputInfo>) -> Result<VarId> {
+        if let Some(var) = self.input_vars.get(name) {
+            return Ok(*var);
+        }
+        let graph = self.program.root.clone();
+        let input = &graph.inputs[i];
+        let counted = matches!(input.kind, InputKind::Counted);
+        let kind = match (&input.kind, info) {
+            (InputKind::Texture { .. }, Some(InputInfo::Texture(texture))) => ObjectKind::Texture(texture),
+            (InputKind::Texture { dimension }, None) if self.stand_in => {
+                ObjectKind::Texture(stand_in_texture(dimension.as_ref().map(|d| d.value)))
+            }
+            (InputKind::Buffer | InputKind::Counted, Some(InputInfo::Buffer { items, stride })) => {
+                let mut kind = buffer(items, counted);
+                if let ObjectKind::Buffer(b) = &mut kind {
+                    b.stride = stride;
+                }
+                kind
+            }
+            (InputKind::Table, Some(InputInfo::Table { rows })) => buffer(rows.len() as u64, false),
+            (InputKind::Buffer | InputKind::Counted | InputKind::Table, None) if self.stand_in => buffer(1000, counted),
+            (kind, Some(_)) => {
+                let message = format!("the input `{name}` wants {}, and is fed something else", wanted(kind));
+                return Err(Box::new(fault(Code::WRONG_KIND, message, input.name.span, "declared here")));
+            }
+            (_, None) => return Err(self.missing_input(0, i)),
+        };
+        let causes = Causes { inputs: [name.to_owned()].into(), ..Causes::default() };
+        let object = Object {
+            path: name.to_owned(),
+            kind,
+            origin: Origin::Input(name.to_owned()),
+            lifetime: None,
+            span: input.name.span,
+        };
+        let building = Building { object, layout: None, mips_auto: false, adapts: self.stand_in, causes };
+        let var = self.add_var(building);
+        self.input_vars.insert(name.to_owned(), var);
+        Ok(var)
+    }
+
+    pub(super) fn attribute_var(
+        &mut self,
+        input: &str,
+        attribute: &str,
+        count: u64,
+        present: bool,
+        span: Span,
+    ) -> VarId {
+        let path = format!("{input}.{attribute}");
+        if let Some(var) = self.input_vars.get(&path) {
+            return *var;
+        }
+        let causes = Causes { inputs: [input.to_owned()].into(), ..Causes::default() };
+        let object = Object {
+            path: path.clone(),
+            kind: buffer(count, false),
+            origin: Origin::Attribute { input: input.to_owned(), attribute: attribute.to_owned(), present },
+            lifetime: None,
+            span,
+        };
+        let var = self.add_var(Building { object, layout: None, mips_auto: false, adapts: false, causes });
+        self.input_vars.insert(path, var);
+        var
+    }
+
+    /// Checks that every input of a graph instance is fed by the right kind of thing.
+    /// Tells whether all are.
+    pub(super) fn check_inputs(&mut self, s: ScopeId) -> bool {
+        let mut all_fit = true;
+        let graph = self.scopes[s].graph.clone();
+        for (i, input) in graph.inputs.iter().enumerate() {
+            // Asking for it must not count as a use.
+            let used = self.used.contains(&input.name.span);
+            let fed = self.resolve(s, &input.name.value, input.name.span);
+            if !used {
+                self.used.remove(&input.name.span);
+            }
+            let Some(entity) = self.report(fed) else {
+                all_fit = false;
+                continue;
+            };
+            if self.scopes[s].parent.is_none() {
+                continue;
+            }
+            if matches!(entity, Entity::Absent) && !input.optional {
+                all_fit = false;
+                let diagnostic = self.absent_fed(s, i);
+                self.diagnostics.push(diagnostic);
+            } else if !self.fits_input(&entity, &input.kind) {
+                all_fit = false;
+                let fed = self.what(&entity);
+                let name = &input.name.value;
+                let message = format!("the input `{name}` wants {}, and is fed {fed}", wanted(&input.kind));
+                let bound = self.scopes[s].binds.get(name).map(|n| n.span);
+                let at = bound.or(self.scopes[s].trace.last().copied()).unwrap_or(input.name.span);
+                self.diagnostics
+                    .push(fault(Code::WRONG_KIND, message, at, "fed here").see(input.name.span, "declared here"));
+            }
+        }
+        all_fit
+    }
+
+    fn absent_fed(&self, s: ScopeId, i: usize) -> Diagnostic {
+        let input = &self.scopes[s].graph.inputs[i];
+        let name = &input.name.value;
+        let at = self.scopes[s].trace.last().copied().unwrap_or(input.name.span);
+        let message = format!("the part needs `{name}`, and what feeds it may be absent");
+        fault(Code::OPTIONAL_INPUT, message, at, "used here")
+            .see(input.name.span, "not optional here")
+            .hint("use the part inside `If(test: \"has(...)\", then: [...])`, or make its input optional")
+    }
+
+    fn fits_input(&self, entity: &Entity, kind: &InputKind) -> bool {
+        let object = match entity {
+            Entity::Var(var) => Some(&self.object(self.vars[*var].now).object.kind),
+            _ => None,
+        };
+        match (kind, entity, object) {
+            (_, Entity::Absent, _) => true,
+            (InputKind::Camera, Entity::Input { kind: InputKind::Camera, .. }, _)
+            | (InputKind::Light, Entity::Input { kind: InputKind::Light, .. }, _)
+            | (InputKind::Pointer, Entity::Input { kind: InputKind::Pointer, .. }, _)
+            | (InputKind::Particles { .. }, Entity::Input { kind: InputKind::Particles { .. }, .. }, _) => true,
+            // A camera or light that a shader wrote.
+            (InputKind::Camera | InputKind::Light, Entity::Var(_), Some(ObjectKind::Buffer(b))) => !b.counted,
+            (InputKind::Texture { dimension }, Entity::Var(_), Some(ObjectKind::Texture(texture))) => {
+                dimension.as_ref().is_none_or(|d| has_dimension(texture, d.value))
+            }
+            (InputKind::Buffer | InputKind::Table, Entity::Var(_), Some(ObjectKind::Buffer(b))) => !b.counted,
+            (InputKind::Counted, Entity::Var(_), Some(ObjectKind::Buffer(b))) => b.counted,
+            _ => false,
+        }
+    }
+}
+
+/// The fields of an input of a kind: what follows its name and a dot.
+pub(super) fn input_fields(kind: &InputKind) -> impl Iterator<Item = &str> {
+    let (table, attributes): (&[(&str, fields::FieldType)], &[Attribute]) = match kind {
+        InputKind::Camera => (fields::CAMERA, &[]),
+        InputKind::Light => (fields::LIGHT, &[]),
+        InputKind::Pointer => (fields::POINTER, &[]),
+        InputKind::Particles { attributes } => (fields::PARTICLES, attributes),
+        _ => (&[], &[]),
+    };
+    table.iter().map(|(name, _)| *name).chain(attributes.iter().map(|a| a.name.value.as_str()))
+}
+
+fn attributes(kind: &InputKind) -> &[Attribute] {
+    match kind {
+        InputKind::Particles { attributes } => attributes,
+        _ => &[],
+    }
+}
+
+/// What an input wants, with its article.
+fn wanted(kind: &InputKind) -> String {
+    let dimension = match kind {
+        InputKind::Texture { dimension: Some(d) } => match d.value {
+            ViewDimension::D2 => "2D ",
+            ViewDimension::D2Array => "2D array ",
+            ViewDimension::Cube => "cube ",
+            ViewDimension::CubeArray => "cube array ",
+            ViewDimension::D3 => "3D ",
+        },
+        _ => "",
+    };
+    match kind {
+        InputKind::Particles { .. } => "Particles".to_owned(),
+        other => format!("a {dimension}{}", other.name()),
+    }
+}
+
+/// Whether a texture can be seen so.
+fn has_dimension(texture: &Texture, dimension: ViewDimension) -> bool {
+    let is_square = texture.width == texture.height;
+    match dimension {
+        ViewDimension::D3 => texture.is_3d,
+        ViewDimension::D2 => !texture.is_3d && texture.layers == 1,
+        ViewDimension::D2Array => !texture.is_3d,
+        ViewDimension::Cube => !texture.is_3d && texture.layers == 6 && is_square,
+        ViewDimension::CubeArray => !texture.is_3d && texture.layers.is_multiple_of(6) && is_square,
+    }
+}
