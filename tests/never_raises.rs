@@ -136,11 +136,19 @@ fn a_usage_that_is_missing_is_caught(engine: &mut Engine) {
         !plan.passes.iter().any(|pass| pass.kind == PassKind::Mips { texture: ObjectRef::Fixed(id) })
     });
     caught(engine, "a buffer that cannot be bound", |plan| {
-        let id = plan.passes.iter().find_map(|pass| match &pass.kind {
-            PassKind::Compute { .. } => pass.accesses.iter().find_map(|access| match access.object {
-                ObjectRef::Fixed(id) => matches!(plan.objects[id].kind, ObjectKind::Buffer(_)).then_some(id),
-                ObjectRef::Ring { .. } => None,
-            }),
+        // Kernels that clear and settle bring the usage with them.
+        let has_kernel = |id: usize| {
+            plan.passes.iter().any(|pass| match &pass.kind {
+                PassKind::Clear { view, .. } => view.object == ObjectRef::Fixed(id),
+                PassKind::Settle { counted, .. } => *counted == ObjectRef::Fixed(id),
+                _ => false,
+            })
+        };
+        let computes = plan.passes.iter().filter(|pass| matches!(pass.kind, PassKind::Compute { .. }));
+        let id = computes.flat_map(|pass| &pass.accesses).find_map(|access| match access.object {
+            ObjectRef::Fixed(id) if matches!(plan.objects[id].kind, ObjectKind::Buffer(_)) => {
+                (!has_kernel(id)).then_some(id)
+            }
             _ => None,
         });
         let Some(ObjectKind::Buffer(buffer)) = id.map(|id| &mut plan.objects[id].kind) else { return false };

@@ -270,11 +270,21 @@ fn widen(gpu: &Gpu, plan: &Plan, descriptions: &mut [Description]) {
                     t.usages |= TextureUsages::TEXTURE_BINDING;
                 }
             }
-            Description::Texture(_) => {}
+            // What has samples must be a target; it is copied only where a pass says so.
+            Description::Texture(t) => t.usages |= TextureUsages::RENDER_ATTACHMENT,
             Description::Buffer { usages, .. } => *usages |= BufferUsages::COPY_SRC | BufferUsages::COPY_DST,
         }
     }
     for pass in &plan.passes {
+        if let PassKind::Copy { from, to } = &pass.kind {
+            for (object, usage) in [(from.object, TextureUsages::COPY_SRC), (to.object, TextureUsages::COPY_DST)] {
+                for id in candidates(plan, object) {
+                    if let Description::Texture(t) = &mut descriptions[id] {
+                        t.usages |= usage;
+                    }
+                }
+            }
+        }
         let (object, mips) = match &pass.kind {
             PassKind::Clear { view, .. } => (view.object, false),
             PassKind::Mips { texture } => (*texture, true),

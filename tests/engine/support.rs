@@ -36,6 +36,7 @@ pub fn new_plan() -> Plan {
         needs: Needs::default(),
         params: Vec::new(),
         structural: Default::default(),
+        arithmetic: Default::default(),
         taken: BTreeMap::new(),
         argument_slots: 8,
         warnings: meniscus::diagnostic::Diagnostics::new(),

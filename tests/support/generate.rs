@@ -78,6 +78,9 @@ enum What {
     Depth { size: usize },
     Samples { size: usize },
     Buffer { items: u32 },
+    Numbers,
+    Volume,
+    Stencil { size: usize },
     List,
     Arguments,
 }
@@ -144,7 +147,12 @@ impl Builder<'_> {
         }
         add("mipped".into(), What::Texture { format: 0, size: 2, layers: 1, mips: 3, auto: true }, 1);
         add("depth".into(), What::Depth { size: 1 }, 1);
-        add("samples".into(), What::Samples { size: 1 }, 1);
+        for name in ["a", "b"] {
+            add(format!("samples_{name}"), What::Samples { size: 1 }, 1);
+            add(format!("numbers_{name}"), What::Numbers, 1);
+            add(format!("volume_{name}"), What::Volume, 1);
+        }
+        add("stencil".into(), What::Stencil { size: 1 }, 1);
         add("few".into(), What::Buffer { items: 1 }, 1);
         add("list".into(), What::List, 1);
         add("arguments".into(), What::Arguments, 1);
@@ -198,7 +206,14 @@ impl Builder<'_> {
                     }
                 }
             }
-            (What::Depth { .. } | What::Samples { .. }, _) => {
+            (What::Volume, 0) => {
+                let fields = format!("shader: \"volume.wgsl\", each: Texel(\"{name}\"), bind: {{\"dst\": \"{name}\"}}");
+                self.pass("Compute", &fields);
+            }
+            (What::Numbers, 0) => {
+                self.pass("Fullscreen", &format!("shader: \"number.wgsl\", color: [\"{name}\"]"));
+            }
+            (What::Depth { .. } | What::Samples { .. } | What::Stencil { .. }, _) => {
                 self.pass("Clear", &format!("of: \"{name}\", value: 0.5"));
             }
             _ => self.pass("Clear", &format!("of: \"{name}\"")),
@@ -219,7 +234,15 @@ impl Builder<'_> {
     /// Two different things of equal description, both written.
     fn pair(&mut self, fits: impl Fn(&What) -> bool) -> (String, String) {
         let a = self.written(|what| {
-            fits(what) && matches!(what, What::Texture { auto: false, .. } | What::Buffer { items: 100 })
+            fits(what)
+                && matches!(
+                    what,
+                    What::Texture { auto: false, .. }
+                        | What::Buffer { items: 100 }
+                        | What::Samples { .. }
+                        | What::Numbers
+                        | What::Volume
+                )
         });
         let what = self.things[a].what;
         let b = (0..self.things.len()).find(|i| *i != a && self.things[*i].what == what).unwrap();
@@ -234,7 +257,7 @@ impl Builder<'_> {
     }
 
     fn step(&mut self) {
-        match self.below(14) {
+        match self.below(21) {
             0 => {
                 let (src, dst) = self.pair(|what| matches!(what, What::Buffer { .. }));
                 self.copy_items(&src, &dst);
@@ -273,8 +296,106 @@ impl Builder<'_> {
                 let i = self.below(self.things.len() as u32) as usize;
                 self.write(i);
             }
-            _ => self.layered(),
+            13 => self.layered(),
+            14 => self.valued(),
+            15 => self.indexed(),
+            16 => self.two_targets(),
+            17 => self.stencilled(),
+            18 => self.sliced(),
+            19 => self.masked(),
+            _ => self.bundled(),
         }
+    }
+
+    /// Parameters, the picture's size, time and a loop's counter in a uniform; a constant.
+    fn valued(&mut self) {
+        let dst = self.written(|what| matches!(what, What::Buffer { .. }));
+        let dst = self.name(dst);
+        let before = self.passes;
+        _ = writeln!(self.text, "      Repeat(times: 2, index: \"turn\", passes: [");
+        let fields = format!(
+            "shader: \"values.wgsl\", each: Item(\"{dst}\"), bind: {{\"dst\": \"{dst}\", \"turn\": \"turn\", \"factor\": \"2.5 * turn\"}}"
+        );
+        self.pass("Compute", &fields);
+        self.text.push_str("      ]),\n");
+        self.passes = before + 2;
+    }
+
+    /// Indices from a buffer; as many as there are, or some of them.
+    fn indexed(&mut self) {
+        let indices = self.written(|what| matches!(what, What::Buffer { .. }));
+        let target = self.written(|what| matches!(what, What::Texture { layers: 1, mips: 1, .. }));
+        let (indices, target) = (self.name(indices), self.name(target));
+        let count = ["", ", vertices: 1"][self.below(2) as usize];
+        let strip = ["TriangleList", "TriangleStrip", "LineStrip"][self.below(3) as usize];
+        let fields = format!(
+            "shader: \"triangle.wgsl\", indices: \"{indices}\"{count}, topology: {strip}, cull: Back, color: [\"{target}\"]"
+        );
+        self.pass("Draw", &fields);
+    }
+
+    fn two_targets(&mut self) {
+        for name in ["parts_a", "parts_b"] {
+            let i = self.things.iter().position(|thing| thing.name == name).unwrap();
+            if !self.things[i].is_written() {
+                self.write(i);
+            }
+        }
+        let (mip, a, b) = (self.below(3), self.below(2), self.below(2));
+        let fields = format!(
+            "shader: \"two.wgsl\", color: [(to: \"parts_a\", mip: {mip}, layer: {a}), (to: \"parts_b\", mip: {mip}, layer: {b}, blend: Max)]"
+        );
+        self.pass("Fullscreen", &fields);
+    }
+
+    fn stencilled(&mut self) {
+        let target = self.written(|what| matches!(what, What::Texture { layers: 2, .. }));
+        self.written(|what| matches!(what, What::Stencil { .. }));
+        let target = self.name(target);
+        let depth = [
+            "(to: \"stencil\", compare: Always, write: false, stencil: (compare: Always, pass: Replace, reference: 3))",
+            "(to: \"stencil\", compare: GreaterEqual, write: true, clear: 0.0, bias: (2, 1.5), stencil: (compare: Equal, reference: 3))",
+        ][self.below(2) as usize];
+        let fields = format!(
+            "shader: \"triangle.wgsl\", vertices: 3, color: [(to: \"{target}\", layer: 0)], depth: Depth{depth}"
+        );
+        self.pass("Draw", &fields);
+    }
+
+    /// A slice of a volume, and whole numbers.
+    fn sliced(&mut self) {
+        let dst = self.written(|what| matches!(what, What::Texture { layers: 1, mips: 1, .. }));
+        let volume = self.written(|what| *what == What::Volume);
+        let numbers = self.written(|what| *what == What::Numbers);
+        let (dst, volume, numbers) = (self.name(dst), self.name(volume), self.name(numbers));
+        let fields = format!(
+            "shader: \"slice.wgsl\", color: [\"{dst}\"], bind: {{\"volume\": \"{volume}\", \"numbers\": \"{numbers}\"}}"
+        );
+        self.pass("Fullscreen", &fields);
+    }
+
+    /// Some channels, or a region.
+    fn masked(&mut self) {
+        let dst = self.written(|what| matches!(what, What::Texture { size: 1, layers: 1, mips: 1, .. }));
+        let dst = self.name(dst);
+        let fields = match self.below(2) {
+            0 => format!("shader: \"paint.wgsl\", color: [(to: \"{dst}\", write: \"rg\")]"),
+            _ => format!("shader: \"paint.wgsl\", color: [\"{dst}\"], region: (1, 2, \"3 + times\", 4)"),
+        };
+        self.pass("Fullscreen", &fields);
+    }
+
+    /// Nothing to do: no threads, no vertices, no instances.
+    fn bundled(&mut self) {
+        let target = self.written(|what| matches!(what, What::Texture { layers: 1, mips: 1, .. }));
+        let list = self.written(|what| *what == What::List);
+        let (target, list) = (self.name(target), self.name(list));
+        self.pass("Compute", "shader: \"append.wgsl\", each: Threads(0)");
+        let draw = format!("shader: \"triangle.wgsl\", vertices: 0, color: [(to: \"{target}\", clear: 0.5)]");
+        self.pass("Draw", &draw);
+        let groups = format!("shader: \"group.wgsl\", groups: Each(\"{list}\")");
+        self.written(|what| matches!(what, What::Buffer { items: 1 }));
+        self.pass("Compute", &groups);
     }
 
     fn copy_items(&mut self, src: &str, dst: &str) {
@@ -303,7 +424,7 @@ impl Builder<'_> {
     }
 
     fn looped(&mut self) {
-        let (a, b) = self.pair(|what| !matches!(what, What::Texture { layers: 2, .. }));
+        let (a, b) = self.pair(|what| matches!(what, What::Texture { layers: 1, .. } | What::Buffer { .. }));
         let times = ["0", "2", "3", "\"times\""][self.below(4) as usize];
         let count = match times {
             "\"times\"" => self.times as usize,
@@ -412,9 +533,12 @@ impl Builder<'_> {
     }
 
     fn resolved(&mut self) {
-        self.written(|what| matches!(what, What::Samples { .. }));
+        let samples = self.things.iter().position(|thing| thing.name == "samples_a").unwrap();
+        if !self.things[samples].is_written() {
+            self.write(samples);
+        }
         let fields =
-            "shader: \"triangle.wgsl\", vertices: 3, samples: 4, color: [(to: \"samples\", resolve: \"resolved\")]";
+            "shader: \"triangle.wgsl\", vertices: 3, samples: 4, color: [(to: \"samples_a\", resolve: \"resolved\")]";
         self.pass("Draw", fields);
         let dst = self.written(|what| matches!(what, What::Texture { layers: 1, mips: 1, .. }));
         let dst = self.name(dst);
@@ -488,6 +612,9 @@ fn declaration(thing: &Thing) -> String {
         What::Depth { size } => format!("Texture(format: Depth32Float, size: {})", SIZES[size]),
         What::Samples { size } => format!("Texture(format: Rgba8Unorm, size: {}, samples: 4)", SIZES[size]),
         What::Buffer { items } => format!("Buffer(items: {items})"),
+        What::Numbers => "Texture(format: R32Uint, size: (16, 16))".to_owned(),
+        What::Volume => "Texture(format: Rgba16Float, size: (8, 6, 5), dimension: D3)".to_owned(),
+        What::Stencil { size } => format!("Texture(format: Depth24PlusStencil8, size: {})", SIZES[size]),
         What::List => "Counted(capacity: 128)".to_owned(),
         What::Arguments => "Buffer(items: 4)".to_owned(),
     };
@@ -563,6 +690,42 @@ fn shaders() -> Vec<(String, String)> {
                 .to_owned(),
         ),
         ("triangle", format!("{corner}{white}")),
+        (
+            "volume",
+            "var dst: texture_storage_3d<rgba16float, write>;\n@compute @workgroup_size(4, 4, 4) fn main(@builtin(global_invocation_id) i: vec3<u32>) \
+             { textureStore(dst, i, vec4<f32>(0.5)); }"
+                .to_owned(),
+        ),
+        ("number", "@fragment fn main() -> @location(0) u32 { return 7u; }".to_owned()),
+        (
+            "slice",
+            format!(
+                "var volume: texture_3d<f32>; var numbers: texture_2d<u32>;\n{at} {{ return textureLoad(volume, vec3<i32>(p.xyx), 0) \
+                 * f32(textureLoad(numbers, vec2<i32>(p.xy), 0).x); }}"
+            ),
+        ),
+        (
+            "two",
+            "struct Out { @location(0) a: vec4<f32>, @location(1) b: vec4<f32> }\n@fragment fn main() -> Out { \
+             return Out(vec4<f32>(1.0), vec4<f32>(2.0)); }"
+                .to_owned(),
+        ),
+        (
+            "values",
+            format!(
+                "struct Values {{ times: i32, fancy: u32, viewport: vec2<f32>, time: f32, turn: u32 }} var<uniform> values: Values;\n\
+                 override factor: f32 = 1.0;\nvar<storage, read_write> dst: array<u32>;\n{thread} {{ if i.x < arrayLength(&dst) {{ \
+                 dst[i.x] += u32(values.times) + values.fancy + u32(values.viewport.x * factor) + u32(values.time) + values.turn; }} }}"
+            ),
+        ),
+        (
+            "group",
+            format!(
+                "{}var<storage, read> list: List; var<storage, read_write> few: array<u32>;\n\
+                 @compute @workgroup_size(1) fn main(@builtin(workgroup_id) i: vec3<u32>) {{ few[0] += list.items[i.x]; }}",
+                list("u32")
+            ),
+        ),
     ] {
         all.push((format!("{name}.wgsl"), text));
     }
