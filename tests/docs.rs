@@ -9,7 +9,7 @@ use meniscus::diagnostic::{Diagnostics, Sources, Style, render_all};
 use meniscus::files::DiskFiles;
 use meniscus::graph::expr::Function;
 use meniscus::plan::fields;
-use meniscus::{check, format, graph, program};
+use meniscus::{check, format, graph, program, scene};
 
 fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
@@ -73,6 +73,35 @@ fn every_example_of_a_graph_can_be_read() {
         }
     }
     assert!(seen >= 8, "only {seen} examples were found");
+}
+
+#[test]
+fn every_example_of_a_scene_can_be_read() {
+    let mut seen = 0;
+    for document in ["README.md", "docs/language.md"] {
+        for (line, block) in blocks(document, "ron").into_iter().filter(|(_, block)| block.starts_with("Scene(")) {
+            let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
+            let scene = scene::read(Path::new("scene.ron"), block.as_bytes(), &mut sources, &mut diagnostics);
+            let shown = rendered(&diagnostics, &sources);
+            assert!(scene.is_some() && shown.is_empty(), "{document}:{line}\n{shown}");
+            seen += 1;
+        }
+    }
+    assert!(seen >= 2, "only {seen} examples were found");
+}
+
+#[test]
+fn the_readme_names_every_command() {
+    use clap::CommandFactory as _;
+    let readme = text("README.md");
+    let section = readme.split("## Commands").nth(1).unwrap().split("\n## ").next().unwrap();
+    let rows = section.lines().filter_map(|line| line.strip_prefix("| `")?.split([' ', '`']).next());
+    let mut named: Vec<&str> = rows.collect();
+    let cli = meniscus::cli::Cli::command();
+    let mut there: Vec<&str> = cli.get_subcommands().map(|command| command.get_name()).collect();
+    named.sort_unstable();
+    there.sort_unstable();
+    assert_eq!(named, there);
 }
 
 /// Whole graphs in the documentation are files of `docs/tour/`, which have their shaders beside them.
