@@ -344,24 +344,50 @@ fn seal_steps(lowering: &mut Lowering<'_>, units: &[model::Unit]) {
 /// What the order of atomics reaches: a pass that uses an atomic's old value, and all that read
 /// what it wrote.
 fn mark_unordered(lowering: &mut Lowering<'_>) {
-    let mut reached: BTreeSet<ObjectId> = BTreeSet::new();
+    // What steps read may be from the step before.
+    let in_steps: BTreeSet<ObjectId> = lowering
+        .flat
+        .iter()
+        .filter(|flat| flat.pass.steps.is_some())
+        .flat_map(|flat| flat.pass.accesses.iter().filter(|a| a.read))
+        .flat_map(|access| lowering.object_ids(access.object))
+        .collect();
+    let mut carried: BTreeSet<ObjectId> = BTreeSet::new();
     loop {
-        let mut changed = false;
+        let mut reached = carried.clone();
         for p in 0..lowering.flat.len() {
             let pass = &lowering.flat[p].pass;
-            let reads = pass.accesses.iter().any(|a| a.read && reached.contains(&lowering.object_id(a.object)));
-            if !(pass.unordered || reads) {
+            let ids = |access: &model::Access| lowering.object_ids(access.object);
+            let reads = |a: &model::Access| a.read && ids(a).iter().any(|id| reached.contains(id));
+            if pass.unordered || pass.accesses.iter().any(reads) {
+                let written: Vec<ObjectId> = pass.accesses.iter().filter(|a| a.write).flat_map(ids).collect();
+                reached.extend(written);
+                lowering.flat[p].pass.unordered = true;
                 continue;
             }
-            let written: Vec<ObjectId> =
-                pass.accesses.iter().filter(|a| a.write).flat_map(|a| lowering.object_ids(a.object)).collect();
-            for id in written {
-                changed |= reached.insert(id);
+            let is_all = |a: &&model::Access| a.whole && whole_object(&lowering.object(a.object).object.kind, a);
+            let renewed: Vec<ObjectId> =
+                pass.accesses.iter().filter(is_all).map(|a| lowering.object_id(a.object)).collect();
+            // A frame may run no step.
+            if pass.steps.is_none() {
+                renewed.iter().for_each(|id| _ = reached.remove(id));
             }
-            lowering.flat[p].pass.unordered = true;
         }
-        if !changed {
+        let before = carried.len();
+        carried.extend(reached.intersection(&in_steps));
+        if carried.len() == before {
             return;
         }
+    }
+}
+
+/// Whether an access covers every mip and layer.
+fn whole_object(kind: &model::ObjectKind, access: &model::Access) -> bool {
+    match kind {
+        model::ObjectKind::Texture(t) => {
+            let layers = if t.is_3d { 1 } else { t.layers };
+            access.mips == (0..t.mips) && access.layers == (0..layers)
+        }
+        model::ObjectKind::Buffer(_) => true,
     }
 }

@@ -183,3 +183,22 @@ fn arguments_that_a_shader_wrote_are_copied_to_a_slot() {
         .collect();
     assert_eq!(offsets, [(32, false, 0), (0, false, 1)]);
 }
+
+#[test]
+fn mips_are_made_anew_in_each_step_that_changed_them_and_behind_the_steps() {
+    let passes = r#"
+        Clear(name: "m0", of: "t", mip: 0), Clear(name: "p0", of: "p"),
+        Fullscreen(name: "one", shader: "sample.wgsl", color: ["o"], bind: {"src": "t"}),
+        Steps(rate: 60, passes: [
+            Fullscreen(name: "look", shader: "sample.wgsl", color: [(to: "p", blend: Add)], bind: {"src": "t"}),
+            Fullscreen(name: "repaint", shader: "paint.wgsl", color: [(to: "t", blend: Add)]),
+        ]),
+        Fullscreen(name: "two", shader: "sample.wgsl", color: [(to: "q")], bind: {"src": "t"}),"#;
+    let resources = format!(r#"{MIPS}, "q": Texture(format: Rgba16Float, size: (8, 8))"#);
+    let plan = Test::of(&resources, passes, r#""o""#).root("p").root("q").plan();
+    // The first step would find them made, the second one would not.
+    let expected = ["m0", "p0", "t (mips)", "one", "t (mips)", "look", "repaint", "t (mips)", "two"];
+    assert_eq!(paths(&plan), expected);
+    assert_eq!(plan.steps[0].passes, 4..7);
+    assert_eq!((plan.passes[2].steps, plan.passes[4].steps, plan.passes[7].steps), (None, Some(0), None));
+}

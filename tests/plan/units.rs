@@ -209,3 +209,25 @@ fn what_the_order_of_atomics_reaches_is_marked() {
         ["zero", "number", "after", "calm"].map(|path| plan.passes[pass(&plan, path)].unordered).into();
     assert_eq!(marked, [false, true, true, false]);
 }
+
+#[test]
+fn what_was_read_before_the_atomics_or_made_anew_behind_them_is_not_marked() {
+    let resources =
+        r#""total": Buffer(items: 64), "a": Buffer(items: 64), "b": Buffer(items: 64), "c": Buffer(items: 64)"#;
+    let number = |name: &str| {
+        format!(r#"Compute(name: "{name}", shader: "atomic.wgsl", each: Item("a"), bind: {{"dst": "a"}}),"#)
+    };
+    let passes = [
+        r#"Clear(name: "zero", of: "total"),"#,
+        &copy("before", "total", "b"),
+        &number("number"),
+        &copy("behind", "a", "c"),
+        r#"Compute(name: "anew", shader: "fill.wgsl", each: Item("a"), bind: {"dst": "a"}),"#,
+        &copy("calm", "a", "d"),
+    ]
+    .concat();
+    let resources = format!(r#"{resources}, "d": Buffer(items: 64)"#);
+    let plan = Test::of(&resources, &passes, r#""b""#).root("c").root("d").plan();
+    let marked: Vec<bool> = plan.passes.iter().map(|p| p.unordered).collect();
+    assert_eq!(marked, [false, false, true, true, false, false], "{:?}", crate::planning::paths(&plan));
+}
