@@ -367,3 +367,75 @@ fn bench_measures_passes_and_memory() {
     assert!(csv.starts_with("what,median_ms,p99_ms\ndiscs,"), "{csv}");
     assert!(good(project.run(&[&args[..], &["table"]].concat())).stdout.contains("all passes"));
 }
+
+/// A project with one graph and its shaders.
+fn project_of(passes: &str, declarations: &str, shaders: &[(&str, &str)]) -> Project {
+    let project = Project::empty();
+    let picture = "\"picture\": Texture(format: Rgba16Float, size: \"viewport\")";
+    let outputs = "outputs: [\"picture\"]";
+    let show = "Fullscreen(shader: \"show.wgsl\", color: [\"picture\"])";
+    let declarations = declarations.replace("PICTURE", picture);
+    project.write("graphs/it.ron", format!("Graph({declarations} passes: [{passes} {show}], {outputs})"));
+    project.write("scenes/it.ron", "Scene(graph: \"it.ron\", size: (16, 8))");
+    for (name, text) in shaders {
+        project.write(&format!("shaders/{name}.wgsl"), text);
+    }
+    project
+}
+
+const COUNT: &str = "var<storage, read_write> count: array<u32>;\n\
+    @compute @workgroup_size(1) fn main() { count[0] += 1u; }";
+const SHOW_COUNT: &str = "var<storage, read> count: array<u32>;\n\
+    @fragment fn main() -> @location(0) vec4f { return vec4f(f32(count[0])); }";
+
+/// How many steps ran until a moment.
+fn steps(project: &Project, when: &[&str]) -> u32 {
+    good(project.run(&[&["render", "scenes/it.ron", "-o", "a.png", "--dump", "count=c.csv"], when].concat()));
+    project.text("c.csv").lines().nth(1).unwrap().parse().unwrap()
+}
+
+#[test]
+fn steps_run_up_to_the_moment_that_is_asked_for() {
+    if !has_adapter() {
+        return;
+    }
+    let shaders = [("count", COUNT), ("show", SHOW_COUNT)];
+    let declarations = "state: {\"count\": Buffer(items: 1)}, resources: {PICTURE},";
+    let at_a_rate = "Steps(rate: 10.0, passes: [Compute(shader: \"count.wgsl\", groups: 1)]),";
+    let project = project_of(at_a_rate, declarations, &shaders);
+    assert_eq!(steps(&project, &["--time", "0.55"]), 5);
+    assert_eq!(steps(&project, &["--frame", "30"]), 5);
+    assert_eq!(steps(&project, &["--frame", "29"]), 4);
+    assert_eq!(steps(&project, &[]), 0);
+    let huge = ["render", "scenes/it.ron", "-o", "b.png", "--time", "1e12"];
+    refused(&project, &huge, 2, &["would run 10000000000000 steps"]);
+    let each_frame = at_a_rate.replace("10.0", "PerFrame");
+    let project = project_of(&each_frame, declarations, &shaders);
+    assert_eq!(steps(&project, &["--frame", "3"]), 4);
+}
+
+const FIND: &str = "struct Found { count: atomic<u32>, items: array<u32> }\n\
+    var<storage, read_write> found: Found;\n\
+    @compute @workgroup_size(64) fn main(@builtin(local_invocation_index) i: u32) {\n\
+        let at = atomicAdd(&found.count, 1u);\n\
+        if at < arrayLength(&found.items) { found.items[at] = i; }\n\
+    }";
+const SHOW_FOUND: &str = "struct Found { count: u32, items: array<u32> }\n\
+    var<storage, read> found: Found;\n\
+    @fragment fn main() -> @location(0) vec4f { return vec4f(f32(found.items[0] + found.count)); }";
+
+#[test]
+fn a_frame_whose_counted_buffer_overflows_is_repeated_with_more_room() {
+    if !has_adapter() {
+        return;
+    }
+    let declarations = "resources: {\"found\": Counted(capacity: 4), PICTURE},";
+    let passes = "Clear(of: \"found\"), Compute(shader: \"find.wgsl\", groups: 1),";
+    let project = project_of(passes, declarations, &[("find", FIND), ("show", SHOW_FOUND)]);
+    let run = good(project.run(&["render", "scenes/it.ron", "-o", "a.png", "--dump", "found=f.csv"]));
+    let said = "`found` had room for 4 items, and 64 came: the frame was repeated";
+    assert!(run.stderr.contains("note[overflow]") && run.stderr.contains(said), "{}", run.stderr);
+    let mut items: Vec<u32> = project.text("f.csv").lines().skip(1).map(|line| line.parse().unwrap()).collect();
+    items.sort_unstable();
+    assert_eq!(items, (0..64).collect::<Vec<u32>>());
+}
