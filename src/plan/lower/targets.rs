@@ -1,6 +1,6 @@
 //! Targets of a draw: colour, resolve, depth and stencil.
 
-use wgpu_types::{Features, TextureUsages};
+use wgpu_types::{Features, TextureFormatFeatureFlags, TextureUsages};
 
 use super::nodes::{Draft, amount, whole_write};
 use super::{Lowering, Place, Result, ScopeId, fault, traced};
@@ -66,7 +66,10 @@ impl Lowering<'_> {
         let (view, texture) = self.target_view(s, &target.to, draft)?;
         let format = texture.format;
         let declared = self.object(view.object).object.span;
-        if format.is_depth_stencil_format() || !format::is_renderable(format, Features::all()) {
+        if format == TextureFormat::Rg11b10Ufloat {
+            self.features |= Features::RG11B10UFLOAT_RENDERABLE;
+        }
+        if format.is_depth_stencil_format() || !format::is_renderable(format, self.features) {
             let message = format!("a texture of {} cannot be a colour target", format::name(format));
             let diagnostic =
                 fault(Code::FORMAT, message, target.span, "a colour target").see(declared, "declared here");
@@ -132,7 +135,7 @@ impl Lowering<'_> {
     }
 
     fn check_blend(&mut self, s: ScopeId, format: TextureFormat, at: Span, declared: Span) -> Result<()> {
-        if format::is_blendable(format, Features::empty()) {
+        if format::is_blendable(format, self.features) {
             return Ok(());
         }
         if format::is_float32(format) {
@@ -165,6 +168,14 @@ impl Lowering<'_> {
             let diagnostic = fault(Code::TARGET_MISMATCH, message, resolve.span, self.describe_object(view.object))
                 .see(self.object(from.object).object.span, self.describe_object(from.object))
                 .hint("resolve 4 samples into a texture of the same format and size without samples");
+            return Err(traced(diagnostic, &self.scopes[s].trace));
+        }
+        let flags = texture.format.guaranteed_format_features(Features::empty()).flags;
+        if !flags.contains(TextureFormatFeatureFlags::MULTISAMPLE_RESOLVE) {
+            let message = format!("samples of {} cannot be resolved", format::name(texture.format));
+            let diagnostic = fault(Code::FORMAT, message, resolve.span, "resolved here")
+                .see(self.object(from.object).object.span, "declared here")
+                .hint("let a shader read them as `texture_multisampled_2d`");
             return Err(traced(diagnostic, &self.scopes[s].trace));
         }
         self.texture_usage(view.object, TextureUsages::RENDER_ATTACHMENT);

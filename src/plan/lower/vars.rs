@@ -1,6 +1,6 @@
 //! Resources and inputs as variables: their descriptions, evaluated when first asked for.
 
-use wgpu_types::{BufferUsages, TextureUsages};
+use wgpu_types::{BufferUsages, Features, TextureFormatFeatureFlags, TextureUsages};
 
 use super::names::{Entity, join};
 use super::nodes::amount;
@@ -109,50 +109,12 @@ impl Lowering<'_> {
         format: &Sp<TextureFormat>,
         size: &[Expr],
         dimension: ViewDimension,
-        given_layers: Option<&Expr>,
+        layers_given: Option<&Expr>,
         mips: Option<&Mips>,
-        samples: Option<&Expr>,
+        samples_given: Option<&Expr>,
     ) -> Result<(ObjectKind, bool, Causes)> {
-        let mut causes = Causes::default();
-        let mut edges = Vec::new();
-        for expr in size {
-            let (value, depends) = self.known(s, expr)?;
-            causes.add(&depends);
-            for component in value.components() {
-                match component {
-                    Value::Int(n) if (1..=MAX_EDGE).contains(n) => edges.push((*n, expr.span)),
-                    Value::Int(n) => {
-                        let message = format!("a texture's edge must be from 1 to {MAX_EDGE} texels, and is {n}");
-                        let mut diagnostic = fault(Code::OUT_OF_RANGE, message, expr.span, format!("this is {value}"));
-                        if *n < 1 {
-                            diagnostic = diagnostic.hint("`max(1, ...)` keeps it above 0");
-                        }
-                        return Err(traced(diagnostic, &self.scopes[s].trace));
-                    }
-                    Value::Float(x) => {
-                        let diagnostic = fault(
-                            Code::FRACTIONAL,
-                            "a texture's size must be whole, and may be fractional",
-                            expr.span,
-                            format!("this is {x}"),
-                        )
-                        .hint("say `floor(...)`, `ceil(...)` or `ceil_div(a, b)`");
-                        return Err(traced(diagnostic, &self.scopes[s].trace));
-                    }
-                    other => return Err(self.mistyped(s, expr, "a size", other)),
-                }
-            }
-        }
         let is_3d = dimension == ViewDimension::D3;
-        let wanted = if is_3d { 3 } else { 2 };
-        if edges.len() == 1 {
-            edges = vec![edges[0]; wanted];
-        }
-        if edges.len() != wanted {
-            let at = size.first().map_or(format.span, |e| e.span);
-            let message = format!("the texture needs {wanted} edges, and `size` gives {}", edges.len());
-            return Err(traced(fault(Code::OUT_OF_RANGE, message, at, "the size"), &self.scopes[s].trace));
-        }
+        let (edges, mut causes) = self.edges(s, format.span, size, if is_3d { 3 } else { 2 })?;
         let mut count = |low: &mut Self, expr: Option<&Expr>, what: &str, default: i64| -> Result<i64> {
             match expr {
                 Some(expr) => {
@@ -164,49 +126,109 @@ impl Lowering<'_> {
             }
         };
         let default_layers = if dimension == ViewDimension::Cube { 6 } else { 1 };
-        let layers =
-            if is_3d { edges[2].0 } else { count(self, given_layers, "the number of layers", default_layers)? };
-        let samples_given = samples.map(|e| e.span);
-        let layers_given = given_layers.map(|e| e.span);
-        let samples = count(self, samples, "samples", 1)?;
-        let full = i64::from(edges.iter().map(|e| e.0).max().unwrap_or(1).ilog2()) + 1;
+        let layers = if is_3d { edges[2] } else { count(self, layers_given, "the number of layers", default_layers)? };
+        let samples = count(self, samples_given, "samples", 1)?;
+        let full = i64::from(edges.iter().max().map_or(1, |edge| edge.unsigned_abs()).ilog2()) + 1;
         let (mips, auto, mips_span) = match mips {
             Some(Mips::Auto(span)) => (full, true, Some(*span)),
             Some(Mips::Count(expr)) => (count(self, Some(expr), "the number of mips", 1)?, false, Some(expr.span)),
             None => (1, false, None),
         };
-        let refuse = |message: String, at: Option<Span>| {
-            let diagnostic = fault(Code::OUT_OF_RANGE, message, at.unwrap_or(format.span), "not possible");
-            Err(traced(diagnostic, &self.scopes[s].trace))
+        let (layers_span, samples_span) = (layers_given.map(|e| e.span), samples_given.map(|e| e.span));
+        let is_cube = dimension == ViewDimension::Cube;
+        let wrong = if samples != 1 && samples != 4 {
+            Some((format!("samples must be 1 or 4, and is {samples}"), samples_span))
+        } else if mips > full {
+            Some((format!("{} x {} texels have {full} mips, not {mips}", edges[0], edges[1]), mips_span))
+        } else if samples > 1 && (mips > 1 || layers > 1 || is_3d) {
+            Some(("a texture with 4 samples has one layer and one mip".into(), samples_span))
+        } else if !is_3d && layers > MAX_LAYERS {
+            Some((format!("a texture has at most {MAX_LAYERS} layers, not {layers}"), layers_span))
+        } else if is_cube && (layers % 6 != 0 || edges[0] != edges[1]) {
+            let shape = format!("{} x {}, {}", edges[0], edges[1], amount(layers.unsigned_abs(), "layer"));
+            Some((format!("a cube is square and has 6 layers or a multiple, not {shape}"), layers_span))
+        } else {
+            None
         };
-        if samples != 1 && samples != 4 {
-            return refuse(format!("samples must be 1 or 4, and is {samples}"), samples_given);
-        }
-        if mips > full {
-            return refuse(format!("{} x {} texels have {full} mips, not {mips}", edges[0].0, edges[1].0), mips_span);
-        }
-        if samples > 1 && (mips > 1 || layers > 1 || is_3d) {
-            return refuse("a texture with 4 samples has one layer and one mip".into(), samples_given);
-        }
-        if !is_3d && layers > MAX_LAYERS {
-            return refuse(format!("a texture has at most {MAX_LAYERS} layers, not {layers}"), layers_given);
-        }
-        if dimension == ViewDimension::Cube && (layers % 6 != 0 || edges[0].0 != edges[1].0) {
-            let shape = format!("{} x {}, {}", edges[0].0, edges[1].0, amount(layers.unsigned_abs(), "layer"));
-            return refuse(format!("a cube is square and has 6 layers or a multiple, not {shape}"), layers_given);
+        if let Some((message, at)) = wrong {
+            let diagnostic = fault(Code::OUT_OF_RANGE, message, at.unwrap_or(format.span), "not possible");
+            return Err(traced(diagnostic, &self.scopes[s].trace));
         }
         let clamp = |n: i64| u32::try_from(n).unwrap_or(u32::MAX);
         let texture = Texture {
             format: format.value,
-            width: clamp(edges[0].0),
-            height: clamp(edges[1].0),
+            width: clamp(edges[0]),
+            height: clamp(edges[1]),
             layers: clamp(layers),
             is_3d,
             mips: clamp(mips),
             samples: clamp(samples),
             usages: TextureUsages::empty(),
         };
+        self.check_format(s, &texture, auto, format.span)?;
         Ok((ObjectKind::Texture(texture), auto, causes))
+    }
+
+    /// The edges of a texture in texels: as many as `wanted`, each from 1 to what devices have.
+    fn edges(&mut self, s: ScopeId, at: Span, size: &[Expr], wanted: usize) -> Result<(Vec<i64>, Causes)> {
+        let mut causes = Causes::default();
+        let mut edges = Vec::new();
+        for expr in size {
+            let (value, depends) = self.known(s, expr)?;
+            causes.add(&depends);
+            for component in value.components() {
+                edges.push(self.edge(s, expr, &value, component)?);
+            }
+        }
+        if edges.len() == 1 {
+            edges = vec![edges[0]; wanted];
+        }
+        if edges.len() != wanted {
+            let at = size.first().map_or(at, |e| e.span);
+            let message = format!("the texture needs {wanted} edges, and `size` gives {}", edges.len());
+            return Err(traced(fault(Code::OUT_OF_RANGE, message, at, "the size"), &self.scopes[s].trace));
+        }
+        Ok((edges, causes))
+    }
+
+    fn edge(&self, s: ScopeId, expr: &Expr, whole: &Value, component: &Value) -> Result<i64> {
+        let diagnostic = match component {
+            Value::Int(n) if (1..=MAX_EDGE).contains(n) => return Ok(*n),
+            Value::Int(n) => {
+                let message = format!("a texture's edge must be from 1 to {MAX_EDGE} texels, and is {n}");
+                let diagnostic = fault(Code::OUT_OF_RANGE, message, expr.span, format!("this is {whole}"));
+                if *n < 1 { diagnostic.hint("`max(1, ...)` keeps it above 0") } else { diagnostic }
+            }
+            Value::Float(x) => {
+                let message = "a texture's size must be whole, and may be fractional";
+                fault(Code::FRACTIONAL, message, expr.span, format!("this is {x}"))
+                    .hint("say `floor(...)`, `ceil(...)` or `ceil_div(a, b)`")
+            }
+            other => return Err(self.mistyped(s, expr, "a size", other)),
+        };
+        Err(traced(diagnostic, &self.scopes[s].trace))
+    }
+
+    /// Whether there are textures of this format with such a shape, samples and automatic mips.
+    fn check_format(&mut self, s: ScopeId, texture: &Texture, mips_auto: bool, at: Span) -> Result<()> {
+        let features = texture.format.guaranteed_format_features(Features::empty());
+        let is_depth = texture.format.is_depth_stencil_format();
+        let can_store = features.allowed_usages.contains(TextureUsages::STORAGE_BINDING);
+        let can_draw = !texture.is_3d && features.allowed_usages.contains(TextureUsages::RENDER_ATTACHMENT);
+        let what = if texture.is_3d && is_depth {
+            "cannot be a 3D texture"
+        } else if texture.samples > 1 && !features.flags.contains(TextureFormatFeatureFlags::MULTISAMPLE_X4) {
+            "cannot have 4 samples"
+        } else if mips_auto && (is_depth || !(can_draw || can_store)) {
+            "cannot have automatic mips"
+        } else {
+            if texture.format == TextureFormat::Depth32FloatStencil8 {
+                self.features |= Features::DEPTH32FLOAT_STENCIL8;
+            }
+            return Ok(());
+        };
+        let message = format!("a texture of {} {what}", format::name(texture.format));
+        Err(traced(fault(Code::FORMAT, message, at, "this format"), &self.scopes[s].trace))
     }
 
     /// What an entity is, more exactly than [`Entity::what`].
