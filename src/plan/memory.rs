@@ -42,11 +42,11 @@ pub(super) fn lifetimes(objects: &mut [Object], touched: &[Vec<ObjectId>], steps
     }
 }
 
-/// Which objects share memory under both policies. `unit_of` and `touched` have the unit and the
-/// objects of each pass; `own` are outputs and what somebody looks at.
+/// Which objects share memory under both policies. `runs` and `touched` have when each pass runs
+/// and its objects; `own` are outputs and what somebody looks at.
 pub(super) fn share(
     objects: &[Object],
-    unit_of: &[usize],
+    runs: &[Runs],
     touched: &[Vec<ObjectId>],
     units: &[Unit],
     own: &BTreeSet<ObjectId>,
@@ -56,7 +56,7 @@ pub(super) fn share(
         .collect();
     let may_always: Vec<bool> = (0..objects.len()).map(|id| !own.contains(&id)).collect();
     let may_keep: Vec<bool> =
-        may_always.iter().zip(same_causes(objects.len(), unit_of, touched, units)).map(|(a, b)| *a && b).collect();
+        may_always.iter().zip(same_causes(objects.len(), runs, touched, units)).map(|(a, b)| *a && b).collect();
     let keep = slots(objects, &of_frame, &may_keep);
     let mut smallest = slots(objects, &of_frame, &may_always);
     // More freedom may lead a greedy choice astray; what may be kept is good enough for both then.
@@ -67,7 +67,7 @@ pub(super) fn share(
         keep,
         smallest,
         unshared: of_frame.iter().map(|id| bytes(&objects[*id].kind)).sum(),
-        lower_bound: lower_bound(objects, &of_frame, own, unit_of.len()),
+        lower_bound: lower_bound(objects, &of_frame, own, runs.len()),
     }
 }
 
@@ -76,14 +76,19 @@ pub fn total(slots: &[Slot]) -> u64 {
     slots.iter().map(|slot| slot.bytes).sum()
 }
 
-/// For each object whether all units that touch it run for the same causes.
-fn same_causes(objects: usize, unit_of: &[usize], touched: &[Vec<ObjectId>], units: &[Unit]) -> Vec<bool> {
-    let mut first: Vec<Option<usize>> = vec![None; objects];
+/// When a pass runs: its unit, and its `Steps`.
+pub(super) type Runs = (usize, Option<usize>);
+
+/// For each object whether all units that touch it run for the same causes. What steps wrote and
+/// others read cannot be made again where a frame is only drawn anew, which runs no step.
+fn same_causes(objects: usize, runs: &[Runs], touched: &[Vec<ObjectId>], units: &[Unit]) -> Vec<bool> {
+    let mut first: Vec<Option<Runs>> = vec![None; objects];
     let mut same = vec![true; objects];
-    for (now, ids) in unit_of.iter().zip(touched) {
+    for ((now, steps), ids) in runs.iter().zip(touched) {
         for id in ids {
-            let unit = *first[*id].get_or_insert(*now);
-            same[*id] = same[*id] && (unit == *now || units[unit].causes == units[*now].causes);
+            let (unit, first_steps) = *first[*id].get_or_insert((*now, *steps));
+            let alike = unit == *now || units[unit].causes == units[*now].causes;
+            same[*id] = same[*id] && alike && first_steps == *steps;
         }
     }
     same

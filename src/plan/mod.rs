@@ -90,7 +90,7 @@ fn finish(
     mut warnings: Diagnostics,
 ) -> Result<Plan, Diagnostics> {
     let mut objects: Vec<Object> = lowering.objects.iter().map(|b| b.object.clone()).collect();
-    let unit_of: Vec<usize> = lowering.flat.iter().map(|f| f.pass.unit).collect();
+    let runs: Vec<memory::Runs> = lowering.flat.iter().map(|f| (f.pass.unit, f.pass.steps)).collect();
     let touched: Vec<Vec<ObjectId>> = lowering
         .flat
         .iter()
@@ -102,7 +102,7 @@ fn finish(
     memory::lifetimes(&mut objects, &touched, &lowering.steps);
     let given = outputs.iter().flat_map(|output| lowering.object_ids(output.object));
     let own: BTreeSet<ObjectId> = roots.iter().copied().chain(given).collect();
-    let memory = memory::share(&objects, &unit_of, &touched, &units, &own);
+    let memory = memory::share(&objects, &runs, &touched, &units, &own);
     let (needs, lacking) = needs::needs(&lowering, &objects);
     if lacking.has_errors() {
         lowering.diagnostics.extend(lacking);

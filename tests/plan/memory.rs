@@ -229,6 +229,32 @@ fn what_lives_into_steps_lives_to_their_end() {
 }
 
 #[test]
+fn what_steps_make_for_others_has_memory_of_its_own_while_things_are_kept() {
+    let graph = r#"Graph(
+        state: { "s": Buffer(items: 64) },
+        resources: { "sum": Buffer(items: 64), "late": Buffer(items: 64), "out": Buffer(items: 64) },
+        passes: [
+            Clear(name: "zero", of: "sum"),
+            Steps(rate: 60, passes: [
+                Compute(name: "step", shader: "add.wgsl", each: Item("s"), bind: {"dst": "s"}),
+                Copy(name: "sum", from: "s", to: "sum"),
+            ]),
+            Copy(name: "show", from: "sum", to: "s_out"),
+            Copy(name: "late", from: "s_out", to: "late"),
+            Copy(name: "out", from: "late", to: "out"),
+        ],
+        outputs: ["out"],
+    )"#;
+    let graph = graph.replace(r#""late": Buffer"#, r#""s_out": Buffer(items: 64), "late": Buffer"#);
+    let plan = Test::new(&graph).plan();
+    hold(&plan);
+    compare(&plan);
+    let sum = object(&plan, "sum");
+    assert!(plan.memory.keep.iter().any(|slot| slot.objects == [sum]), "{:?}", plan.memory.keep);
+    assert!(plan.memory.smallest.iter().any(|slot| slot.objects == [sum, object(&plan, "late")]));
+}
+
+#[test]
 fn textures_share_only_with_their_like_and_a_slot_is_as_large_as_its_largest() {
     let resources = r#""a": Texture(format: Rgba16Float, size: (8, 8)), "b": Texture(format: Rgba8Unorm, size: (8, 8)),
         "c": Texture(format: Rgba16Float, size: (8, 8)), "d": Texture(format: Rgba16Float, size: (8, 8)),
