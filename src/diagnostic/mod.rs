@@ -1,8 +1,8 @@
 //! What is wrong, where, and how to mend it.
 //!
 //! A [`Diagnostic`] is a value: a stable id, a severity, a message, labels with spans in any
-//! number of files, and hints. Nothing here prints or exits; [`text`] and [`json`] turn values
-//! into output, and whoever drives a command decides what to do with them.
+//! number of files, and hints. Nothing here prints or exits; [`render`] and [`to_json`] turn
+//! values into output, and whoever drives a command decides what to do with them.
 //!
 //! Messages are lower case, name the thing and say what was expected and what was found; the
 //! remedy is a hint.
