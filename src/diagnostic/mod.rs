@@ -1,7 +1,7 @@
 //! What is wrong, where, and how to mend it.
 //!
 //! A [`Diagnostic`] is a value: a stable id, a severity, a message, labels with spans in any
-//! number of files, and hints. Nothing here prints or exits; [`text`] and [`json`] turn values
+//! number of files, and hints. Nothing here prints or exits; [`render_all`] and [`to_json`] turn values
 //! into output, and whoever drives a command decides what to do with them.
 //!
 //! Messages are lower case, name the thing and say what was expected and what was found; the
