@@ -413,8 +413,14 @@ mod spacing {
             a.iter().zip(b).map(|(a, b)| (f64::from(*a) - f64::from(*b)).powi(2)).sum()
         };
         let few = points.len() < 256;
+        // A heap of more than 24 in one place is one neighbour.
+        let heaped = |p: &[f32; 3]| points.iter().filter(|q| *q == p).count() > 24;
+        let mut places: Vec<[f32; 3]> = points.iter().copied().filter(|p| !heaped(p)).collect();
+        if let Some(heap) = points.iter().find(|p| heaped(p)) {
+            places.push(*heap);
+        }
         let ranked = |p: &[f32; 3]| {
-            let mut all: Vec<f64> = points.iter().map(|q| squared(p, q)).filter(|d| *d > 0.0).collect();
+            let mut all: Vec<f64> = places.iter().map(|q| squared(p, q)).filter(|d| *d > 0.0).collect();
             all.sort_by(f64::total_cmp);
             all.get(if few { 0 } else { 31 }).copied()
         };
@@ -424,7 +430,7 @@ mod spacing {
             return all[all.len() / 2].sqrt() / 2.0;
         }
         // 32 and a half of them share the ball.
-        let volume = 4.0 / 3.0 * std::f64::consts::PI * all[all.len() / 4].sqrt().powi(3);
+        let volume = 4.0 / 3.0 * std::f64::consts::PI * all[all.len() / 20].sqrt().powi(3);
         (volume / 32.5).cbrt() / 2.0
     }
 

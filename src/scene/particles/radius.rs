@@ -20,8 +20,8 @@ const NEIGHBOURS: usize = 32;
 /// That is the radius of particles that started on a lattice of twice the radius, as solvers
 /// have it; the distance to the nearest one alone would be up to a fifth less, since particles
 /// come closer than the lattice while they move. Up to 2,000 particles, spread evenly over the
-/// list, are asked; each searches among all. At the surface neighbours are further away, so the
-/// lower quartile counts. With few particles it is half of the median distance to the nearest.
+/// list, are asked; each searches among all. At the surface, and in thin layers,
+/// neighbours are further away, so the twentieth that has them nearest counts. With few particles it is half of the median distance to the nearest.
 pub fn estimate_radius(positions: &[[f32; 3]]) -> Option<f32> {
     let finite = |p: &&[f32; 3]| p.iter().all(|v| v.is_finite());
     let mut points: Vec<[f32; 3]> = positions.iter().filter(finite).copied().collect();
@@ -32,7 +32,7 @@ pub fn estimate_radius(positions: &[[f32; 3]]) -> Option<f32> {
     let many = enough.then(|| points_amid(&tree, &asked, NEIGHBOURS)).flatten();
     let spacing = match many {
         Some(mut squared) => {
-            let rank = squared.len() / 4;
+            let rank = squared.len() / 20;
             let (_, ranked, _) = squared.select_nth_unstable_by(rank, f64::total_cmp);
             // The ball that just reaches the last neighbour holds the particle, the others, and half of that one.
             ranked.sqrt() * (4.0 / 3.0 * std::f64::consts::PI / (NEIGHBOURS as f64 + 0.5)).cbrt()
