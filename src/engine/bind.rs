@@ -105,12 +105,7 @@ pub(super) fn references(pass: &Pass) -> Vec<ObjectRef> {
                 found.extend(target.resolve.as_ref().map(|v| v.object));
             }
             found.extend(draw.depth.as_ref().map(|d| d.view.object));
-            match draw.geometry {
-                Geometry::Indexed { indices, .. } | Geometry::Indirect { indices: Some(indices), .. } => {
-                    found.push(indices);
-                }
-                _ => {}
-            }
+            found.extend(draw.geometry.buffers());
             &draw.shader.bindings
         }
         PassKind::Clear { view, .. } => {
@@ -129,9 +124,12 @@ pub(super) fn references(pass: &Pass) -> Vec<ObjectRef> {
         }
     };
     found.extend(bindings.iter().filter_map(|b| match &b.bound {
-        Bound::UniformBuffer { buffer } | Bound::Storage { buffer, .. } => Some(*buffer),
+        Bound::UniformBuffer { buffer } | Bound::Storage { buffer, .. } | Bound::Material { buffer, .. } => Some(*buffer),
         Bound::Texture { view, .. } | Bound::StorageTexture { view, .. } => Some(view.object),
-        Bound::Uniform { .. } | Bound::Sampler { .. } => None,
+        Bound::Uniform { .. }
+        | Bound::Sampler { .. }
+        | Bound::MaterialTexture { .. }
+        | Bound::MaterialSampler { .. } => None,
     }));
     found
 }

@@ -210,7 +210,7 @@ impl Runner {
 }
 
 fn is_input(plan: &Plan, object: usize) -> bool {
-    matches!(plan.objects[object].origin, Origin::Input(_) | Origin::Attribute { .. })
+    plan.objects[object].origin.input().is_some()
 }
 
 fn check_features(gpu: &Gpu, plan: &Plan) -> Result<(), Diagnostic> {

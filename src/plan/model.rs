@@ -18,6 +18,8 @@ use crate::graph::model::{Blend, Compare, Face, ParamKind, Sampler, StencilOpera
 use crate::graph::value::Value;
 use crate::shader::reflect::{Module, TextureDimension, Type};
 
+use super::meshes::{MaterialTexture, MeshBuffer, MeshGeometry, MeshesInfo};
+
 /// Index into [`Plan::objects`].
 pub type ObjectId = usize;
 
@@ -121,6 +123,18 @@ pub enum Origin {
     Input(String),
     /// An attribute of a particle input.
     Attribute { input: String, attribute: String, present: bool },
+    /// A buffer of a mesh input; the input is empty where nothing feeds it.
+    Mesh { input: String, buffer: MeshBuffer },
+}
+
+impl Origin {
+    /// The root's input that fills it, if one does.
+    pub fn input(&self) -> Option<&str> {
+        match self {
+            Origin::Input(input) | Origin::Attribute { input, .. } | Origin::Mesh { input, .. } => Some(input),
+            Origin::Frame | Origin::State(_) => None,
+        }
+    }
 }
 
 /// An object, or a member of a ring of state that steps rotate.
@@ -283,6 +297,21 @@ pub enum Bound {
     Sampler {
         sampler: usize,
     },
+    /// The factors of the material that is drawn: so many bytes of its item of a buffer.
+    Material {
+        buffer: ObjectRef,
+        bytes: u32,
+    },
+    /// A texture of the material that is drawn.
+    MaterialTexture {
+        input: String,
+        texture: MaterialTexture,
+    },
+    /// The sampler that goes with it.
+    MaterialSampler {
+        input: String,
+        texture: MaterialTexture,
+    },
 }
 
 /// A part of an object. For buffers the ranges are `0..1`.
@@ -328,6 +357,21 @@ pub enum Geometry {
         slot: u32,
         indices: Option<ObjectRef>,
     },
+    /// The triangles of a mesh input.
+    Meshes(MeshGeometry),
+}
+
+impl Geometry {
+    /// The buffers that the draw takes vertices and indices from.
+    pub fn buffers(&self) -> Vec<ObjectRef> {
+        match self {
+            Geometry::Fullscreen | Geometry::Direct { .. } | Geometry::Indirect { indices: None, .. } => Vec::new(),
+            Geometry::Indexed { indices, .. } | Geometry::Indirect { indices: Some(indices), .. } => vec![*indices],
+            Geometry::Meshes(meshes) => {
+                meshes.vertices.iter().filter_map(|v| v.buffer).chain([meshes.indices]).collect()
+            }
+        }
+    }
 }
 
 #[derive(Clone, Debug, PartialEq)]
@@ -529,6 +573,7 @@ pub enum InputInfo {
     Table {
         rows: Vec<BTreeMap<String, Value>>,
     },
+    Meshes(MeshesInfo),
 }
 
 /// Visits every object that a pass refers to.
@@ -536,9 +581,14 @@ pub fn each_ref(kind: &mut PassKind, visit: &mut dyn FnMut(&mut ObjectRef)) {
     fn shader(shader: &mut ShaderUse, visit: &mut dyn FnMut(&mut ObjectRef)) {
         for binding in &mut shader.bindings {
             match &mut binding.bound {
-                Bound::UniformBuffer { buffer } | Bound::Storage { buffer, .. } => visit(buffer),
+                Bound::UniformBuffer { buffer } | Bound::Storage { buffer, .. } | Bound::Material { buffer, .. } => {
+                    visit(buffer);
+                }
                 Bound::Texture { view, .. } | Bound::StorageTexture { view, .. } => visit(&mut view.object),
-                Bound::Uniform { .. } | Bound::Sampler { .. } => {}
+                Bound::Uniform { .. }
+                | Bound::Sampler { .. }
+                | Bound::MaterialTexture { .. }
+                | Bound::MaterialSampler { .. } => {}
             }
         }
     }
@@ -548,6 +598,7 @@ pub fn each_ref(kind: &mut PassKind, visit: &mut dyn FnMut(&mut ObjectRef)) {
             shader(&mut draw.shader, visit);
             match &mut draw.geometry {
                 Geometry::Indexed { indices, .. } | Geometry::Indirect { indices: Some(indices), .. } => visit(indices),
+                // What inputs fill is never swapped.
                 _ => {}
             }
             for target in &mut draw.color {

@@ -69,6 +69,9 @@ impl Lowering<'_> {
             let components = self.attribute_components(input, attribute);
             layout = self.attribute_layout(s, place, layout, components)?;
         }
+        if let Origin::Mesh { buffer, .. } = &building.object.origin {
+            self.mesh_layout(s, place, buffer, &building.object.path, &layout)?;
+        }
         if let Some(first) = &building.layout
             && !(first.header == layout.header && first.stride == layout.stride && same_type(&first.item, &layout.item))
         {

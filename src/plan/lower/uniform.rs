@@ -116,7 +116,7 @@ impl Lowering<'_> {
     fn named(&mut self, s: ScopeId, prefix: &Prefix, member: &Member, at: Span) -> Result<Option<(String, Scalar)>> {
         match prefix {
             Prefix::Input { root, kind } if input_fields(kind).any(|field| field == member.name) => {
-                if !matches!(kind, ast::InputKind::Particles { .. }) {
+                if !matches!(kind, ast::InputKind::Particles { .. } | ast::InputKind::Meshes { .. }) {
                     return Ok(Some((String::new(), self.live_field(root, &member.name, member.span))));
                 }
                 if let Entity::Scalar(scalar) = self.resolve(0, &format!("{root}.{}", member.name), member.span)? {
