@@ -15,6 +15,8 @@ mod errors;
 mod gpu;
 mod join;
 mod kernels;
+mod materials;
+mod meshes;
 mod mips;
 pub mod packing;
 mod pipeline;
@@ -29,6 +31,7 @@ mod uniform;
 mod upload;
 
 pub use errors::{any_device_gone, is_device_gone};
+pub use materials::{MaterialImage, MaterialSampler, MaterialSlots};
 pub use gpu::{AdapterSummary, Gpu, GpuOptions, wanted_features};
 pub use pool::Policy;
 pub use prepare::{Engine, Refused, Runner};

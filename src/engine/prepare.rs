@@ -11,6 +11,8 @@ use super::errors;
 use super::gpu::Gpu;
 use super::join;
 use super::kernels;
+use super::materials::Materials;
+use super::meshes::{self, ByFaces};
 use super::mips;
 use super::pipeline::{Pipeline, PipelineCache, Recipe, RecipeKind, Source, Stage};
 use super::pool::{Policy, Pool};
@@ -36,6 +38,9 @@ pub struct Runner {
     pub(super) plan: Plan,
     pub(super) pool: Pool,
     pub(super) pipelines: Vec<Option<Arc<Pipeline>>>,
+    /// Of draws of meshes.
+    pub(super) by_faces: Vec<Option<ByFaces>>,
+    pub(super) materials: Materials,
     pub(super) variants: Vec<Variants>,
     pub(super) rings_of: Vec<Vec<usize>>,
     /// For each pass the first one of the render pass that it may share.
@@ -86,7 +91,7 @@ impl Engine {
         self.gpu.check()?;
         check_features(&self.gpu, &plan)?;
         self.cache.begin_round();
-        let pipelines = self.pipelines(&plan)?;
+        let (pipelines, by_faces) = self.pipelines(&plan)?;
         let state_kept = state_kept(&plan, previous);
         let pool = Pool::new(&self.gpu, &plan, self.policy, previous.map(|p| &p.pool), &state_kept)?;
         let uniforms = Uniforms::new(&self.gpu, &plan)?;
@@ -96,8 +101,11 @@ impl Engine {
         let leaders = join::leaders(&plan, &pool);
         let draws_joined = leaders.iter().enumerate().filter(|(pass, leader)| pass != *leader).count();
         let (rotation, done) = progress(&plan, previous, &state_kept);
+        let materials = Materials::new(&self.gpu, &plan, previous.map(|p| &p.materials));
         let mut runner = Runner {
             pipelines,
+            by_faces,
+            materials,
             variants: plan.passes.iter().map(|_| Variants::new()).collect(),
             rings_of: plan.passes.iter().map(rings_of).collect(),
             timing: Timing::new(&self.gpu, &plan),
@@ -136,22 +144,30 @@ impl Engine {
     }
 
     /// The pipeline of each pass that needs one.
-    fn pipelines(&mut self, plan: &Plan) -> Result<Vec<Option<Arc<Pipeline>>>, Diagnostics> {
+    fn pipelines(&mut self, plan: &Plan) -> Result<Pipelines, Diagnostics> {
         let mut found = Diagnostics::new();
         let mut pipelines = Vec::with_capacity(plan.passes.len());
+        let mut by_faces = Vec::with_capacity(plan.passes.len());
         for pass in &plan.passes {
             let made = recipe(&self.gpu, plan, pass).and_then(|recipe| {
-                let Some(recipe) = recipe else { return Ok(None) };
-                self.kernel(&recipe, &pass.path).map(Some)
+                let Some(recipe) = recipe else { return Ok((None, None)) };
+                let pipeline = self.kernel(&recipe, &pass.path)?;
+                Ok((Some(pipeline), self.by_faces(&recipe, pass)?))
             });
             match made {
-                Ok(pipeline) => pipelines.push(pipeline),
+                Ok((pipeline, faces)) => {
+                    pipelines.push(pipeline);
+                    by_faces.push(faces);
+                }
                 Err(error) => found.push(errors::refused("the pipeline of", &pass.path, pass.span, &error)),
             }
         }
-        if found.is_empty() { Ok(pipelines) } else { Err(found) }
+        if found.is_empty() { Ok((pipelines, by_faces)) } else { Err(found) }
     }
 }
+
+/// The pipeline of each pass, and those of draws of meshes by the ways that triangles face.
+type Pipelines = (Vec<Option<Arc<Pipeline>>>, Vec<Option<ByFaces>>);
 
 impl Runner {
     pub fn plan(&self) -> &Plan {
@@ -171,7 +187,7 @@ impl Runner {
 
     /// Bytes of textures and buffers that are held now, without what others share with it.
     pub fn memory_bytes(&self) -> u64 {
-        self.pool.bytes()
+        self.pool.bytes() + self.materials.bytes()
     }
 
     /// Starts all state anew: zeroed memory, no step done.
@@ -308,6 +324,7 @@ fn draw_recipe(plan: &Plan, draw: &Draw) -> Result<Recipe, String> {
         kind: RecipeKind::Draw {
             vertex,
             fragment,
+            vertices: meshes::slots(draw),
             targets: draw.color.iter().map(|t| Some(convert::color_target(t))).collect(),
             primitive: convert::primitive(draw),
             depth: draw.depth.as_ref().map(convert::depth_stencil),

@@ -16,6 +16,15 @@ pub struct Image {
     pub clipped: usize,
 }
 
+/// Texels of 8 bits each way as a file stores them, row by row from the top, alpha not multiplied
+/// in. Whether they are sRGB or linear is known only to what uses them.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Stored {
+    pub width: u32,
+    pub height: u32,
+    pub texels: Vec<[u8; 4]>,
+}
+
 /// A file that is no picture, and why.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ImageError {

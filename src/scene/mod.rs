@@ -7,6 +7,7 @@ pub mod camera;
 pub mod convert;
 pub mod framing;
 pub mod image;
+pub mod meshes;
 mod model;
 pub mod particles;
 mod read;

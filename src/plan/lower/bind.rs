@@ -6,7 +6,8 @@ use wgpu_types::ShaderStages;
 
 use super::meshes::MeshInput;
 use super::names::Entity;
-use super::nodes::{Draft, Viewed};
+use super::nodes::Draft;
+use super::view::Viewed;
 use super::{Lowering, Place, Result, ScopeId, fault, traced};
 use crate::diagnostic::{Code, Diagnostic, Label, Span};
 use crate::format::{self, SampleKind};
@@ -204,7 +205,7 @@ impl Lowering<'_> {
         let building = self.object(object);
         let (mips, layers, dimension) = match &building.object.kind {
             ObjectKind::Texture(t) => {
-                (t.mips, if t.is_3d { 1 } else { t.layers }, super::nodes::natural_dimension(t.is_3d, t.layers))
+                (t.mips, if t.is_3d { 1 } else { t.layers }, super::view::natural_dimension(t.is_3d, t.layers))
             }
             ObjectKind::Buffer(_) => (1, 1, TextureDimension::D2),
         };

@@ -3,7 +3,8 @@
 use wgpu_types::BufferUsages;
 
 use super::bind::Feed;
-use super::nodes::{Draft, Viewed};
+use super::nodes::Draft;
+use super::view::Viewed;
 use super::{Layout, Lowering, Result, ScopeId, fault, traced};
 use crate::diagnostic::{Code, Diagnostic, Span};
 use crate::plan::model::{Bound, ObjectKind, ObjectRef, Origin};

@@ -14,10 +14,14 @@ mod meshes;
 mod names;
 mod nodes;
 mod scalars;
+mod steps;
+mod swaps;
 mod targets;
 mod textures;
+mod transfer;
 mod uniform;
 mod vars;
+mod view;
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::sync::Arc;

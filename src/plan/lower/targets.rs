@@ -2,7 +2,8 @@
 
 use wgpu_types::{Features, TextureFormatFeatureFlags, TextureUsages};
 
-use super::nodes::{Draft, amount, whole_write};
+use super::nodes::{Draft, amount};
+use super::view::whole_write;
 use super::{Lowering, Place, Result, ScopeId, fault, traced};
 use crate::diagnostic::{Code, Span};
 use crate::format::{self, SampleKind, TextureFormat};

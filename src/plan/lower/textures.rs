@@ -3,7 +3,8 @@
 use wgpu_types::{Features, TextureUsages};
 
 use super::bind::Feed;
-use super::nodes::{Draft, Viewed};
+use super::nodes::Draft;
+use super::view::Viewed;
 use super::{Lowering, Result, ScopeId, fault, traced};
 use crate::diagnostic::Code;
 use crate::format::{self, SampleKind, TextureFormat};
