@@ -6,13 +6,14 @@ use std::sync::Arc;
 
 use super::bind::{Fixed, references};
 use super::clear;
+use super::compile::Compiler;
 use super::convert;
 use super::errors;
 use super::gpu::Gpu;
 use super::join;
 use super::kernels;
 use super::mips;
-use super::pipeline::{Pipeline, PipelineCache, Recipe, RecipeKind, Source, Stage};
+use super::pipeline::{Pipeline, Recipe, RecipeKind, Source, Stage};
 use super::pool::{Policy, Pool};
 use super::report::{BuildReport, Report};
 use super::run::Variants;
@@ -25,7 +26,7 @@ use crate::plan::model::{Draw, ObjectRef, Origin, Pass, PassKind, Plan, ShaderUs
 #[derive(Debug)]
 pub struct Engine {
     gpu: Gpu,
-    cache: PipelineCache,
+    compiler: Compiler,
     /// Which objects share memory, from the next preparation on.
     pub policy: Policy,
 }
@@ -63,11 +64,16 @@ pub struct Refused {
 
 impl Engine {
     pub fn new(gpu: Gpu) -> Self {
-        Self { gpu, cache: PipelineCache::default(), policy: Policy::default() }
+        Self { compiler: Compiler::new(&gpu), gpu, policy: Policy::default() }
     }
 
     pub fn gpu(&self) -> &Gpu {
         &self.gpu
+    }
+
+    /// What makes this engine's pipelines, for another thread to do so aside.
+    pub fn compiler(&self) -> Compiler {
+        self.compiler.clone()
     }
 
     /// Builds all that a plan needs beside what runs. Memory, state and pipelines whose
@@ -85,8 +91,7 @@ impl Engine {
     fn build(&mut self, plan: Plan, previous: Option<&Runner>) -> Result<Runner, Diagnostics> {
         self.gpu.check()?;
         check_features(&self.gpu, &plan)?;
-        self.cache.begin_round();
-        let pipelines = self.pipelines(&plan)?;
+        let (pipelines, compiled) = self.compiler.pipelines(&plan)?;
         let state_kept = state_kept(&plan, previous);
         let pool = Pool::new(&self.gpu, &plan, self.policy, previous.map(|p| &p.pool), &state_kept)?;
         let uniforms = Uniforms::new(&self.gpu, &plan)?;
@@ -108,8 +113,8 @@ impl Engine {
             loads_are_free: self.gpu.info().device_type == wgpu::DeviceType::Cpu,
             last: None,
             build: BuildReport {
-                pipelines_built: self.cache.built,
-                pipelines_reused: self.cache.reused,
+                pipelines_built: compiled.built,
+                pipelines_reused: compiled.reused,
                 draws_joined,
                 memory_bytes: pool.bytes(),
                 state_kept: plan.steps.iter().map(|s| s.path.clone()).zip(state_kept).collect(),
@@ -126,30 +131,8 @@ impl Engine {
     }
 
     /// A pipeline of the engine's own, outside any preparation.
-    pub(super) fn kernel(&mut self, recipe: &Recipe, label: &str) -> Result<Arc<Pipeline>, String> {
-        let (gpu, cache) = (&self.gpu, &mut self.cache);
-        let made = errors::scoped(gpu, || cache.get(gpu, recipe, label));
-        if made.is_err() {
-            cache.forget(recipe);
-        }
-        made
-    }
-
-    /// The pipeline of each pass that needs one.
-    fn pipelines(&mut self, plan: &Plan) -> Result<Vec<Option<Arc<Pipeline>>>, Diagnostics> {
-        let mut found = Diagnostics::new();
-        let mut pipelines = Vec::with_capacity(plan.passes.len());
-        for pass in &plan.passes {
-            let made = recipe(&self.gpu, plan, pass).and_then(|recipe| {
-                let Some(recipe) = recipe else { return Ok(None) };
-                self.kernel(&recipe, &pass.path).map(Some)
-            });
-            match made {
-                Ok(pipeline) => pipelines.push(pipeline),
-                Err(error) => found.push(errors::refused("the pipeline of", &pass.path, pass.span, &error)),
-            }
-        }
-        if found.is_empty() { Ok(pipelines) } else { Err(found) }
+    pub(super) fn kernel(&self, recipe: &Recipe, label: &str) -> Result<Arc<Pipeline>, String> {
+        self.compiler.kernel(recipe, label)
     }
 }
 
@@ -281,7 +264,7 @@ fn progress(plan: &Plan, previous: Option<&Runner>, state_kept: &[bool]) -> (Vec
 }
 
 /// What the pipeline of a pass is made from.
-fn recipe(gpu: &Gpu, plan: &Plan, pass: &Pass) -> Result<Option<Recipe>, String> {
+pub(super) fn recipe(gpu: &Gpu, plan: &Plan, pass: &Pass) -> Result<Option<Recipe>, String> {
     match &pass.kind {
         PassKind::Compute { shader, .. } => compute_recipe(plan, shader).map(Some),
         PassKind::Draw(draw) => draw_recipe(plan, draw).map(Some),
