@@ -30,8 +30,8 @@ pub struct AdapterSummary {
     pub limits: Limits,
 }
 
-/// An open device.
-#[derive(Debug)]
+/// An open device. Clones are the same device.
+#[derive(Clone, Debug)]
 pub struct Gpu {
     instance: Option<wgpu::Instance>,
     adapter: Option<wgpu::Adapter>,

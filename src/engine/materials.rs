@@ -30,7 +30,7 @@ pub struct MaterialImage<'a> {
 }
 
 /// How a texture is looked up.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct MaterialSampler {
     pub wrap_u: wgt::AddressMode,
     pub wrap_v: wgt::AddressMode,
@@ -157,14 +157,17 @@ impl Runner {
     /// If the device refuses one of them.
     pub fn upload_materials(
         &mut self,
-        engine: &mut Engine,
+        engine: &Engine,
         input: &str,
         images: &[MaterialImage<'_>],
         materials: Vec<MaterialSlots>,
     ) -> Result<(), Diagnostic> {
-        let mut kinds: Vec<MaterialSampler> = materials.iter().flatten().flatten().map(|(_, kind)| *kind).collect();
-        kinds.sort_unstable();
-        kinds.dedup();
+        let mut kinds: Vec<MaterialSampler> = Vec::new();
+        for (_, kind) in materials.iter().flatten().flatten() {
+            if !kinds.contains(kind) {
+                kinds.push(*kind);
+            }
+        }
         let refused = |error: String| {
             Diagnostic::error(Code::DEVICE, format!("the device refused the textures of `{input}`: {error}"))
         };
@@ -186,7 +189,7 @@ impl Runner {
 
 /// A texture of an image and its mips. What is larger than the device can do is halved until it
 /// fits: a model is drawn coarser rather than not at all.
-fn upload(engine: &mut Engine, image: &MaterialImage<'_>) -> Result<wgpu::Texture, String> {
+fn upload(engine: &Engine, image: &MaterialImage<'_>) -> Result<wgpu::Texture, String> {
     let most = engine.gpu().limits().max_texture_dimension_2d;
     let (mut width, mut height) = (image.width.max(1), image.height.max(1));
     let mut halved: Option<Vec<[u8; 4]>> = None;
@@ -244,7 +247,7 @@ fn write(gpu: &Gpu, texture: &wgpu::Texture, texels: &[[u8; 4]]) {
     );
 }
 
-fn make_mips(engine: &mut Engine, texture: &wgpu::Texture) -> Result<(), String> {
+fn make_mips(engine: &Engine, texture: &wgpu::Texture) -> Result<(), String> {
     if texture.mip_level_count() < 2 {
         return Ok(());
     }

@@ -8,7 +8,7 @@ use wgpu_types as wgt;
 
 use super::bind::Bench;
 use super::pipeline::{Pipeline, PipelineKind, Recipe, RecipeKind, VertexSlot};
-use super::prepare::{Engine, Runner};
+use super::prepare::Runner;
 use crate::plan::meshes::{Faces, MeshGeometry, VertexAttribute};
 use crate::plan::model::{Binding, Bound, Draw, Geometry, Pass, PassKind};
 
@@ -49,32 +49,36 @@ pub(super) fn slots(draw: &Draw) -> Vec<VertexSlot> {
     meshes.vertices.iter().map(slot).collect()
 }
 
-impl Engine {
-    /// Pipelines for the ways in which a draw's triangles face, from that of the pass.
-    pub(super) fn by_faces(&mut self, recipe: &Recipe, pass: &Pass) -> Result<Option<ByFaces>, String> {
-        let PassKind::Draw(draw) = &pass.kind else { return Ok(None) };
-        let Geometry::Meshes(meshes) = &draw.geometry else { return Ok(None) };
-        let mut pipelines = ByFaces::default();
-        for faces in Faces::ALL {
-            if !meshes.draws.iter().any(|call| call.faces == faces) {
-                continue;
-            }
-            let mut recipe = recipe.clone();
-            if let RecipeKind::Draw { primitive, .. } = &mut recipe.kind {
-                if faces.double_sided {
-                    primitive.cull_mode = None;
-                }
-                if faces.mirrored {
-                    primitive.front_face = match primitive.front_face {
-                        wgt::FrontFace::Ccw => wgt::FrontFace::Cw,
-                        wgt::FrontFace::Cw => wgt::FrontFace::Ccw,
-                    };
-                }
-            }
-            pipelines[faces.index()] = Some(self.kernel(&recipe, &pass.path)?);
+/// Pipelines for the ways in which a draw's triangles face, from that of the pass.
+pub(super) fn by_faces(
+    recipe: &Recipe,
+    pass: &Pass,
+    get: &mut dyn FnMut(&Recipe) -> Result<Arc<Pipeline>, String>,
+) -> Result<Option<ByFaces>, String> {
+    let PassKind::Draw(draw) = &pass.kind else { return Ok(None) };
+    let Geometry::Meshes(meshes) = &draw.geometry else { return Ok(None) };
+    let mut pipelines = ByFaces::default();
+    for faces in Faces::ALL {
+        if meshes.draws.iter().any(|call| call.faces == faces) {
+            pipelines[faces.index()] = Some(get(&facing(recipe.clone(), faces))?);
         }
-        Ok(Some(pipelines))
     }
+    Ok(Some(pipelines))
+}
+
+fn facing(mut recipe: Recipe, faces: Faces) -> Recipe {
+    if let RecipeKind::Draw { primitive, .. } = &mut recipe.kind {
+        if faces.double_sided {
+            primitive.cull_mode = None;
+        }
+        if faces.mirrored {
+            primitive.front_face = match primitive.front_face {
+                wgt::FrontFace::Ccw => wgt::FrontFace::Cw,
+                wgt::FrontFace::Cw => wgt::FrontFace::Ccw,
+            };
+        }
+    }
+    recipe
 }
 
 impl Bench<'_> {

@@ -9,6 +9,7 @@
 
 mod bind;
 mod clear;
+mod compile;
 mod convert;
 mod encode;
 mod errors;
@@ -30,6 +31,7 @@ mod timing;
 mod uniform;
 mod upload;
 
+pub use compile::{Compiled, Compiler};
 pub use errors::{any_device_gone, is_device_gone};
 pub use materials::{MaterialImage, MaterialSampler, MaterialSlots};
 pub use gpu::{AdapterSummary, Gpu, GpuOptions, wanted_features};

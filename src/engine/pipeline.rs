@@ -152,8 +152,6 @@ pub(super) struct PipelineCache {
     layouts: HashMap<Vec<wgt::BindGroupLayoutEntry>, wgpu::BindGroupLayout>,
     pipelines: HashMap<Key, Kept<Arc<Pipeline>>>,
     round: u64,
-    pub built: usize,
-    pub reused: usize,
 }
 
 /// How many preparations a pipeline outlives its last use: going back to an earlier text while
@@ -161,29 +159,26 @@ pub(super) struct PipelineCache {
 const KEPT_ROUNDS: u64 = 64;
 
 impl PipelineCache {
-    /// Begins to count anew, and lets go of what has long been out of use.
+    /// Lets go of what has long been out of use.
     pub fn begin_round(&mut self) {
         self.round += 1;
-        self.built = 0;
-        self.reused = 0;
         let oldest = self.round.saturating_sub(KEPT_ROUNDS);
         self.modules.retain(|_, kept| kept.used >= oldest);
         self.pipelines.retain(|_, kept| kept.used >= oldest);
     }
 
-    /// The pipeline of a recipe, from the cache or made now. To be called inside error scopes;
-    /// what is made inside a scope that catches an error must be forgotten with [`Self::forget`].
-    pub fn get(&mut self, gpu: &Gpu, recipe: &Recipe, label: &str) -> Arc<Pipeline> {
+    /// The pipeline of a recipe, from the cache or made now, and whether it is new. To be called inside
+    /// error scopes; what is made inside a scope that catches an error must be forgotten with
+    /// [`Self::forget`].
+    pub fn get(&mut self, gpu: &Gpu, recipe: &Recipe, label: &str) -> (Arc<Pipeline>, bool) {
         let key = recipe.key();
         if let Some(kept) = self.pipelines.get_mut(&key) {
             kept.used = self.round;
-            self.reused += 1;
-            return Arc::clone(&kept.value);
+            return (Arc::clone(&kept.value), false);
         }
         let pipeline = Arc::new(self.build(gpu, recipe, label));
-        self.built += 1;
         self.pipelines.insert(key, Kept { value: Arc::clone(&pipeline), used: self.round });
-        pipeline
+        (pipeline, true)
     }
 
     /// Forgets what a recipe made: it is invalid.
@@ -237,7 +232,9 @@ impl PipelineCache {
         let buffers: Vec<_> = vertices
             .iter()
             .zip(&attributes)
-            .map(|(v, attributes)| wgpu::VertexBufferLayout { array_stride: v.stride, step_mode: v.step, attributes })
+            .map(|(v, attributes)| {
+                Some(wgpu::VertexBufferLayout { array_stride: v.stride, step_mode: v.step, attributes })
+            })
             .collect();
         gpu.device().create_render_pipeline(&wgpu::RenderPipelineDescriptor {
             label: Some(label),

@@ -6,6 +6,7 @@ use std::sync::Arc;
 
 use super::bind::{Fixed, references};
 use super::clear;
+use super::compile::Compiler;
 use super::convert;
 use super::errors;
 use super::gpu::Gpu;
@@ -14,7 +15,7 @@ use super::kernels;
 use super::materials::Materials;
 use super::meshes::{self, ByFaces};
 use super::mips;
-use super::pipeline::{Pipeline, PipelineCache, Recipe, RecipeKind, Source, Stage};
+use super::pipeline::{Pipeline, Recipe, RecipeKind, Source, Stage};
 use super::pool::{Policy, Pool};
 use super::report::{BuildReport, Report};
 use super::run::Variants;
@@ -27,7 +28,7 @@ use crate::plan::model::{Draw, ObjectRef, Origin, Pass, PassKind, Plan, ShaderUs
 #[derive(Debug)]
 pub struct Engine {
     gpu: Gpu,
-    cache: PipelineCache,
+    compiler: Compiler,
     /// Which objects share memory, from the next preparation on.
     pub policy: Policy,
 }
@@ -68,11 +69,16 @@ pub struct Refused {
 
 impl Engine {
     pub fn new(gpu: Gpu) -> Self {
-        Self { gpu, cache: PipelineCache::default(), policy: Policy::default() }
+        Self { compiler: Compiler::new(&gpu), gpu, policy: Policy::default() }
     }
 
     pub fn gpu(&self) -> &Gpu {
         &self.gpu
+    }
+
+    /// What makes this engine's pipelines, for another thread to do so aside.
+    pub fn compiler(&self) -> Compiler {
+        self.compiler.clone()
     }
 
     /// Builds all that a plan needs beside what runs. Memory, state and pipelines whose
@@ -90,8 +96,7 @@ impl Engine {
     fn build(&mut self, plan: Plan, previous: Option<&Runner>) -> Result<Runner, Diagnostics> {
         self.gpu.check()?;
         check_features(&self.gpu, &plan)?;
-        self.cache.begin_round();
-        let (pipelines, by_faces) = self.pipelines(&plan)?;
+        let (pipelines, by_faces, compiled) = self.compiler.pipelines(&plan)?;
         let state_kept = state_kept(&plan, previous);
         let pool = Pool::new(&self.gpu, &plan, self.policy, previous.map(|p| &p.pool), &state_kept)?;
         let uniforms = Uniforms::new(&self.gpu, &plan)?;
@@ -116,8 +121,8 @@ impl Engine {
             loads_are_free: self.gpu.info().device_type == wgpu::DeviceType::Cpu,
             last: None,
             build: BuildReport {
-                pipelines_built: self.cache.built,
-                pipelines_reused: self.cache.reused,
+                pipelines_built: compiled.built,
+                pipelines_reused: compiled.reused,
                 draws_joined,
                 memory_bytes: pool.bytes(),
                 state_kept: plan.steps.iter().map(|s| s.path.clone()).zip(state_kept).collect(),
@@ -134,40 +139,10 @@ impl Engine {
     }
 
     /// A pipeline of the engine's own, outside any preparation.
-    pub(super) fn kernel(&mut self, recipe: &Recipe, label: &str) -> Result<Arc<Pipeline>, String> {
-        let (gpu, cache) = (&self.gpu, &mut self.cache);
-        let made = errors::scoped(gpu, || cache.get(gpu, recipe, label));
-        if made.is_err() {
-            cache.forget(recipe);
-        }
-        made
-    }
-
-    /// The pipeline of each pass that needs one.
-    fn pipelines(&mut self, plan: &Plan) -> Result<Pipelines, Diagnostics> {
-        let mut found = Diagnostics::new();
-        let mut pipelines = Vec::with_capacity(plan.passes.len());
-        let mut by_faces = Vec::with_capacity(plan.passes.len());
-        for pass in &plan.passes {
-            let made = recipe(&self.gpu, plan, pass).and_then(|recipe| {
-                let Some(recipe) = recipe else { return Ok((None, None)) };
-                let pipeline = self.kernel(&recipe, &pass.path)?;
-                Ok((Some(pipeline), self.by_faces(&recipe, pass)?))
-            });
-            match made {
-                Ok((pipeline, faces)) => {
-                    pipelines.push(pipeline);
-                    by_faces.push(faces);
-                }
-                Err(error) => found.push(errors::refused("the pipeline of", &pass.path, pass.span, &error)),
-            }
-        }
-        if found.is_empty() { Ok((pipelines, by_faces)) } else { Err(found) }
+    pub(super) fn kernel(&self, recipe: &Recipe, label: &str) -> Result<Arc<Pipeline>, String> {
+        self.compiler.kernel(recipe, label)
     }
 }
-
-/// The pipeline of each pass, and those of draws of meshes by the ways that triangles face.
-type Pipelines = (Vec<Option<Arc<Pipeline>>>, Vec<Option<ByFaces>>);
 
 impl Runner {
     pub fn plan(&self) -> &Plan {
@@ -297,7 +272,7 @@ fn progress(plan: &Plan, previous: Option<&Runner>, state_kept: &[bool]) -> (Vec
 }
 
 /// What the pipeline of a pass is made from.
-fn recipe(gpu: &Gpu, plan: &Plan, pass: &Pass) -> Result<Option<Recipe>, String> {
+pub(super) fn recipe(gpu: &Gpu, plan: &Plan, pass: &Pass) -> Result<Option<Recipe>, String> {
     match &pass.kind {
         PassKind::Compute { shader, .. } => compute_recipe(plan, shader).map(Some),
         PassKind::Draw(draw) => draw_recipe(plan, draw).map(Some),

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use super::inputs::Input;
 use super::load::{COLOR, Content};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
-use crate::engine::{Engine, Gpu, Runner, packing};
+use crate::engine::{Compiled, Compiler, Engine, Gpu, Runner, packing};
 use crate::graph::value::Value;
 use crate::plan;
 use crate::plan::model::{Object, ObjectId, ObjectKind, ObjectRef, Origin, Plan, Texture};
@@ -21,6 +21,24 @@ pub struct Session {
     pub(super) content: Option<Content>,
     /// Room that counted buffers turned out to need, by instance path.
     pub(super) capacities: BTreeMap<String, u64>,
+}
+
+/// Plans content, and compiles what its plans need, beside a session and on any thread.
+#[derive(Clone, Debug)]
+pub struct Builder {
+    compiler: Compiler,
+    /// Room that counted buffers turned out to need, by instance path.
+    pub capacities: BTreeMap<String, u64>,
+}
+
+/// Content with its plans, for [`Session::install`].
+#[derive(Debug)]
+pub struct Planned {
+    pub content: Content,
+    pub plan: Plan,
+    pub(super) present: Plan,
+    /// What was compiled aside.
+    pub compiled: Compiled,
 }
 
 /// What a build made.
@@ -53,7 +71,21 @@ impl Session {
     /// # Errors
     /// With everything that planning or the device refuses; then the session is as it was.
     pub fn build(&mut self, content: Content) -> Result<Built, Diagnostics> {
-        let (plan, present_plan) = self.plans(&content)?;
+        let planned = self.builder().plan(content)?;
+        self.install(planned)
+    }
+
+    /// What plans and compiles content for this session, also on another thread.
+    pub fn builder(&self) -> Builder {
+        Builder { compiler: self.engine.compiler(), capacities: self.capacities.clone() }
+    }
+
+    /// Swaps in what was planned, if the device gives all that it needs.
+    ///
+    /// # Errors
+    /// With everything that the device refuses; then the session is as it was.
+    pub fn install(&mut self, planned: Planned) -> Result<Built, Diagnostics> {
+        let Planned { content, plan, present: present_plan, compiled } = planned;
         let warnings = plan.warnings.clone();
         let present_before = self.present.take();
         let mut present = match self.engine.prepare(present_plan, present_before) {
@@ -77,9 +109,10 @@ impl Session {
                 upload(&self.engine, &mut present, &content.present_inputs, before)
             });
         let reports = [graph.build_report(), present.build_report()];
+        let reused: usize = reports.iter().map(|r| r.pipelines_reused).sum();
         let built = Built {
-            pipelines_built: reports.iter().map(|r| r.pipelines_built).sum(),
-            pipelines_reused: reports.iter().map(|r| r.pipelines_reused).sum(),
+            pipelines_built: compiled.built + reports.iter().map(|r| r.pipelines_built).sum::<usize>(),
+            pipelines_reused: reused.saturating_sub(compiled.built),
             memory_bytes: graph.memory_bytes() + present.memory_bytes(),
             diagnostics: warnings,
         };
@@ -90,8 +123,20 @@ impl Session {
         Ok(built)
     }
 
-    fn plans(&self, content: &Content) -> Result<(Plan, Plan), Diagnostics> {
-        let gpu = self.engine.gpu();
+    /// Plans and prepares the graph again with more room; inputs stay.
+    pub(super) fn grow(&mut self) -> Result<(), Diagnostics> {
+        let Some(content) = self.content.take() else { return Ok(()) };
+        self.build(content).map(|_| ())
+    }
+}
+
+impl Builder {
+    /// Plans the content's graph and the one that presents it.
+    ///
+    /// # Errors
+    /// With everything that planning finds.
+    pub fn plan(&self, content: Content) -> Result<Planned, Diagnostics> {
+        let gpu = self.compiler.gpu();
         check_size(content.viewport, &gpu.limits())?;
         let request = content.request(gpu.features(), gpu.limits(), &self.capacities);
         let mut plan = plan::instantiate(&content.program, &request)?;
@@ -99,13 +144,18 @@ impl Session {
         let request = content.present_request(color, gpu.features(), gpu.limits());
         let present = plan::instantiate(&content.present, &request)?;
         share_usages(&mut plan, id, &present);
-        Ok((plan, present))
+        Ok(Planned { content, plan, present, compiled: Compiled::default() })
     }
 
-    /// Plans and prepares the graph again with more room; inputs stay.
-    pub(super) fn grow(&mut self) -> Result<(), Diagnostics> {
-        let Some(content) = self.content.take() else { return Ok(()) };
-        self.build(content).map(|_| ())
+    /// Has the driver compile all that the plans need, so that installing them waits for no compiler.
+    ///
+    /// # Errors
+    /// With every pipeline that the device refuses.
+    pub fn compile(&self, planned: &mut Planned) -> Result<(), Diagnostics> {
+        let present = self.compiler.compile(&planned.present)?;
+        let graph = self.compiler.compile(&planned.plan)?;
+        planned.compiled = Compiled { built: present.built + graph.built, reused: present.reused + graph.reused };
+        Ok(())
     }
 }
 

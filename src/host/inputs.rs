@@ -141,7 +141,7 @@ fn offered(declared: &Declared, scene: &Scene, decoded: &Decoded) -> Option<Inpu
         InputKind::Particles { .. } => decoded.particles.get(name).cloned().map(Input::Particles),
         InputKind::Texture { .. } => decoded.images.get(name).cloned().map(Input::Image),
         InputKind::Table => find(&scene.tables, name).map(|item| Input::Table(item.value.clone())),
-        InputKind::Buffer | InputKind::Counted => None,
+        InputKind::Buffer | InputKind::Counted | InputKind::Meshes { .. } => None,
     }
 }
 

@@ -15,7 +15,7 @@ pub mod picture;
 mod source;
 
 pub use assets::{Cache, Particles};
-pub use build::{Built, Session};
+pub use build::{Builder, Built, Planned, Session};
 pub use draw::{Drawn, Moment};
 pub use inputs::Input;
 pub use load::{Content, Job, Loaded, load};

@@ -183,7 +183,7 @@ impl MeshBuffer {
 
     /// Whether time changes what it holds, where it changes anything.
     pub fn moves(&self) -> bool {
-        matches!(self, MeshBuffer::Bodies | MeshBuffer::Instances)
+        matches!(self, MeshBuffer::Instances)
     }
 
     /// How many items there are.
