@@ -10,6 +10,8 @@ mod draw;
 pub mod dump;
 mod inputs;
 mod load;
+mod meshes;
+mod models;
 pub mod params;
 pub mod picture;
 mod source;
