@@ -130,7 +130,9 @@ pub(super) fn references(pass: &Pass) -> Vec<ObjectRef> {
         }
     };
     found.extend(bindings.iter().filter_map(|b| match &b.bound {
-        Bound::UniformBuffer { buffer } | Bound::Storage { buffer, .. } | Bound::Material { buffer, .. } => Some(*buffer),
+        Bound::UniformBuffer { buffer } | Bound::Storage { buffer, .. } | Bound::Material { buffer, .. } => {
+            Some(*buffer)
+        }
         Bound::Texture { view, .. } | Bound::StorageTexture { view, .. } => Some(view.object),
         Bound::Uniform { .. }
         | Bound::Sampler { .. }
@@ -151,7 +153,9 @@ impl Bench<'_> {
     pub fn variant(&self, index: usize, pipeline: Option<&Pipeline>) -> Result<Variant, String> {
         let pass = &self.plan.passes[index];
         match &pass.kind {
-            PassKind::Compute { shader, .. } => Ok(Variant::Compute(self.group(pass, pipeline, &shader.bindings, 0)?)),
+            PassKind::Compute { shader, .. } => {
+                Ok(Variant::Compute(self.group(pass, pipeline, &shader.bindings, 0)?))
+            }
             PassKind::Draw(draw) => Ok(Variant::Draw(self.draw(index, pass, pipeline, draw)?)),
             PassKind::Clear { view, value } => clear::variant(self, pass, pipeline, view, *value).map(Variant::Clear),
             PassKind::Mips { texture } => mips::variant(self, pass, pipeline, *texture).map(Variant::Mips),
@@ -162,13 +166,7 @@ impl Bench<'_> {
         }
     }
 
-    fn draw(
-        &self,
-        index: usize,
-        pass: &Pass,
-        pipeline: Option<&Pipeline>,
-        draw: &Draw,
-    ) -> Result<DrawVariant, String> {
+    fn draw(&self, index: usize, pass: &Pass, pipeline: Option<&Pipeline>, draw: &Draw) -> Result<DrawVariant, String> {
         let color = draw.color.iter().map(|target| {
             let resolve = target.resolve.as_ref().map(|v| self.attachment(v)).transpose()?;
             Ok((self.attachment(&target.view)?, resolve))

@@ -48,10 +48,7 @@ impl Compiler {
     }
 
     /// The pipeline of each pass that needs one.
-    pub(super) fn pipelines(
-        &self,
-        plan: &Plan,
-    ) -> Result<(Pipelines, Vec<Option<ByFaces>>, Compiled), Diagnostics> {
+    pub(super) fn pipelines(&self, plan: &Plan) -> Result<(Pipelines, Vec<Option<ByFaces>>, Compiled), Diagnostics> {
         self.cache.lock().unwrap_or_else(PoisonError::into_inner).begin_round();
         let mut found = Diagnostics::new();
         let mut compiled = Compiled::default();

@@ -73,7 +73,9 @@ pub(super) fn buffer_type(ty: wgt::BufferBindingType) -> wgt::BindingType {
 
 fn binding_type(plan: &Plan, bound: &Bound) -> wgt::BindingType {
     match bound {
-        Bound::Uniform { .. } | Bound::UniformBuffer { .. } | Bound::Material { .. } => buffer_type(wgt::BufferBindingType::Uniform),
+        Bound::Uniform { .. } | Bound::UniformBuffer { .. } | Bound::Material { .. } => {
+            buffer_type(wgt::BufferBindingType::Uniform)
+        }
         Bound::Storage { writable, .. } => buffer_type(wgt::BufferBindingType::Storage { read_only: !writable }),
         Bound::Texture { view, sample, filtered, multisampled } => wgt::BindingType::Texture {
             sample_type: match sample {

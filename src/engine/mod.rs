@@ -33,8 +33,8 @@ mod upload;
 
 pub use compile::{Compiled, Compiler};
 pub use errors::{any_device_gone, is_device_gone};
-pub use materials::{MaterialImage, MaterialSampler, MaterialSlots};
 pub use gpu::{AdapterSummary, Gpu, GpuOptions, wanted_features};
+pub use materials::{MaterialImage, MaterialSampler, MaterialSlots};
 pub use pool::Policy;
 pub use prepare::{Engine, Refused, Runner};
 pub use readback::TextureData;

@@ -4,12 +4,10 @@ use std::borrow::Cow;
 use std::collections::BTreeMap;
 
 use super::inputs::Input;
-use super::meshes::Meshes;
 use super::load::{COLOR, Content};
+use super::meshes::Meshes;
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
-use crate::engine::{
-    Compiled, Compiler, Engine, Gpu, MaterialImage, MaterialSampler, MaterialSlots, Runner, packing,
-};
+use crate::engine::{Compiled, Compiler, Engine, Gpu, MaterialImage, MaterialSampler, MaterialSlots, Runner, packing};
 use crate::graph::value::Value;
 use crate::plan;
 use crate::plan::meshes::MeshBuffer;

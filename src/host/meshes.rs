@@ -144,7 +144,8 @@ impl Meshes {
         self.bodies.extend(about.world_from_body.iter().map(DMat4::as_mat4));
         let pose = self.entries[entry].pose(0.0);
         for (node, body_from_node) in pose.iter().enumerate() {
-            let Some((mesh, ranges)) = model.nodes[node].mesh.and_then(|m| Some((model.meshes.get(m)?, placed.indices.get(m)?)))
+            let Some((mesh, ranges)) =
+                model.nodes[node].mesh.and_then(|m| Some((model.meshes.get(m)?, placed.indices.get(m)?)))
             else {
                 continue;
             };
@@ -207,11 +208,11 @@ impl Meshes {
         let mut boxes: BTreeMap<u32, (Vec3, Vec3)> = BTreeMap::new();
         let (mut min, mut max) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
         for instance in &self.instances {
-            let (low, high) =
-                *boxes.entry(instance.first_triangle).or_insert_with(|| self.vertices.bounds(instance));
+            let (low, high) = *boxes.entry(instance.first_triangle).or_insert_with(|| self.vertices.bounds(instance));
             let world = self.bodies[instance.body as usize] * poses[instance.entry][instance.node];
             for corner in 0..8 {
-                let part = Vec3::from_array([0, 1, 2].map(|axis| if corner >> axis & 1 == 0 { low } else { high }[axis]));
+                let part =
+                    Vec3::from_array([0, 1, 2].map(|axis| if corner >> axis & 1 == 0 { low } else { high }[axis]));
                 let at = world.transform_point3(part);
                 (min, max) = (min.min(at), max.max(at));
             }

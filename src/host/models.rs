@@ -93,8 +93,7 @@ impl Models {
         }
         let (mut found, mut failed) = (BTreeMap::new(), Vec::new());
         for MeshFiles { name, entries, paths } in all {
-            let parts: Option<Vec<Arc<Model>>> =
-                paths.iter().map(|path| models.get(path.as_ref()?).cloned()).collect();
+            let parts: Option<Vec<Arc<Model>>> = paths.iter().map(|path| models.get(path.as_ref()?).cloned()).collect();
             match parts.and_then(|parts| self.join(&name, entries, parts, diagnostics)) {
                 Some(meshes) => _ = found.insert(name, meshes),
                 None => failed.push(name),

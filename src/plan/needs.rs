@@ -127,7 +127,9 @@ fn of_bindings(
                     "max_uniform_buffers_per_shader_stage",
                     Some(("max_uniform_buffer_binding_size", u64::from(*bytes))),
                 ),
-                Bound::Texture { .. } | Bound::MaterialTexture { .. } => ("max_sampled_textures_per_shader_stage", None),
+                Bound::Texture { .. } | Bound::MaterialTexture { .. } => {
+                    ("max_sampled_textures_per_shader_stage", None)
+                }
                 Bound::StorageTexture { .. } => ("max_storage_textures_per_shader_stage", None),
                 Bound::Sampler { .. } | Bound::MaterialSampler { .. } => ("max_samplers_per_shader_stage", None),
             };

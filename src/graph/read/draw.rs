@@ -6,8 +6,8 @@ use super::values::{bind, expr, expr_field, exprs_of, path_field, place, tagged,
 use crate::diagnostic::{Code, Diagnostic};
 use crate::graph::expr::{Expr, ExprKind};
 use crate::graph::model::{
-    Blend, BlendComponent, Compare, Count, Depth, Draw, Face, Factor, Indirect, Operation, Stencil, StencilOperation,
-    Name, Target, Topology,
+    Blend, BlendComponent, Compare, Count, Depth, Draw, Face, Factor, Indirect, Name, Operation, Stencil,
+    StencilOperation, Target, Topology,
 };
 use crate::graph::value::Value;
 use crate::syntax::{Decoder, Fields, Kind, Node, Sp, Tagged};

@@ -4,6 +4,7 @@ use wgpu_types::BufferUsages;
 
 use super::bind::{Feed, Stages, describe};
 use super::buffers::same_type;
+use super::inputs::input_fields;
 use super::names::{Entity, list};
 use super::nodes::Draft;
 use super::{Building, Layout, Lowering, Place, Result, Scalar, ScopeId, VarId, fault, traced};
@@ -11,7 +12,6 @@ use crate::diagnostic::{Code, Diagnostic, Span};
 use crate::format::SampleKind;
 use crate::graph::model::{self as ast, InputKind, Name, Param};
 use crate::graph::value::Value;
-use crate::plan::fields;
 use crate::plan::meshes::{
     MATERIAL, MATERIAL_ALIGNMENT, MaterialTexture, MeshBuffer, MeshDraw, MeshGeometry, MeshesInfo, VertexAttribute,
     VertexBuffer, instance_type,
@@ -74,7 +74,12 @@ impl Lowering<'_> {
             return Ok(Entity::Var(self.mesh_var(root, &info, buffer.clone(), span)));
         }
         let Some(value) = declared.iter().find(|v| v.name.value == field) else {
-            return Err(self.unknown_field(s, if root.is_empty() { "it" } else { root }, field, fields::MESHES, span));
+            let names: Vec<String> = input_fields(&kind).map(str::to_owned).collect();
+            let message = format!("meshes have no field `{field}`");
+            let diagnostic = fault(Code::UNKNOWN_NAME, message, span, "unknown field")
+                .nearest(field, names.iter().map(String::as_str))
+                .hint(format!("their fields are {}", list(&names)));
+            return Err(traced(diagnostic, &self.scopes[s].trace));
         };
         self.used.insert(value.name.span);
         self.check_values(root, &info, value)?;
@@ -178,8 +183,8 @@ impl Lowering<'_> {
             Entity::Input { root, kind: InputKind::Meshes { .. } } => Ok(MeshInput { root, name: name.clone() }),
             other => {
                 let message = format!("`{}` is {}, not meshes", name.value, self.what(&other));
-                let diagnostic = fault(Code::WRONG_KIND, message, name.span, "not meshes")
-                    .hint("declare an input of kind `Meshes`");
+                let diagnostic =
+                    fault(Code::WRONG_KIND, message, name.span, "not meshes").hint("declare an input of kind `Meshes`");
                 Err(traced(diagnostic, &self.scopes[s].trace))
             }
         }
@@ -277,9 +282,7 @@ impl Lowering<'_> {
             }
             (
                 MaterialKind::Texture(texture),
-                GlobalKind::Texture {
-                    dimension: TextureDimension::D2, multisampled: false, sample: SampleKind::Float
-                },
+                GlobalKind::Texture { dimension: TextureDimension::D2, multisampled: false, sample: SampleKind::Float },
             ) => Ok(Some(Bound::MaterialTexture { input, texture })),
             (MaterialKind::Sampler(texture), GlobalKind::Sampler { comparison: false }) => {
                 Ok(Some(Bound::MaterialSampler { input, texture }))
@@ -292,13 +295,13 @@ impl Lowering<'_> {
                     _ => "a 2D texture of floats",
                 };
                 let message = format!(
-                    "the shader's `{}` is of the material and {wanted}, and is declared as {}",
+                    "the material's `{}` is {wanted}, and the shader declares {}",
                     global.name,
                     describe(found)
                 );
                 let diagnostic = fault(Code::BINDING_MISMATCH, message, global.span, "the shader's variable")
                     .see(place.stages.at, "run by this pass")
-                    .hint(format!("declare it so, or rename it: in a draw of meshes `{}` is taken", global.name));
+                    .hint("in a draw of meshes the name is the material's: declare it so, or rename it");
                 Err(traced(diagnostic, &self.scopes[s].trace))
             }
         }

@@ -12,6 +12,7 @@ use crate::graph::expr::ExprKind;
 use crate::graph::model::{self as ast, Name};
 use crate::graph::value::Value;
 use crate::plan::fields::{self, FieldType};
+use crate::plan::meshes::MATERIAL;
 use crate::plan::model::{Access, Bound, ObjectKind, Param, UniformBlock, UniformMember, UniformValue};
 use crate::shader::reflect::{self, Member, Type};
 
@@ -155,6 +156,9 @@ impl Lowering<'_> {
         let mut diagnostic = fault(Code::UNBOUND, message, member.span, "the member")
             .see(place.stages.at, "run by this pass")
             .nearest(&member.name, names.iter().map(String::as_str));
+        if MATERIAL.iter().any(|(name, _)| *name == member.name) {
+            diagnostic = diagnostic.hint("materials are there in a `Draw(meshes: ...)`, as `var<uniform> material`");
+        }
         diagnostic = match prefix {
             Prefix::Input { kind, .. } => {
                 diagnostic.hint(format!("a {} has {}", kind.name(), super::names::list(&names)))

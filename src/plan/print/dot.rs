@@ -82,7 +82,11 @@ fn resource(plan: &Plan, id: ObjectId) -> String {
         Origin::Input(_) | Origin::Attribute { .. } | Origin::Mesh { .. } => "#d9ecd9",
     };
     let name = object.path.rsplit('.').next().unwrap_or(&object.path);
-    let name = if matches!(object.origin, Origin::Attribute { .. } | Origin::Mesh { .. }) { object.path.as_str() } else { name };
+    let name = if matches!(object.origin, Origin::Attribute { .. } | Origin::Mesh { .. }) {
+        object.path.as_str()
+    } else {
+        name
+    };
     let label = quoted(&format!("{name}\n{}", describe::object(object)));
     let edge = if is_output { ", penwidth=2" } else { "" };
     format!("r{id} [shape=box, style=\"rounded,filled\", fillcolor=\"{fill}\"{edge}, label={label}];")
