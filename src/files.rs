@@ -1,7 +1,7 @@
 //! The one door to files, so that the core can run where there is no file system.
 
 use std::collections::BTreeMap;
-use std::io;
+use std::io::{self, Read as _};
 use std::path::{Component, Path, PathBuf};
 use std::sync::Arc;
 
@@ -23,6 +23,17 @@ pub struct DiskFiles;
 
 impl Files for DiskFiles {
     fn read(&self, path: &Path) -> io::Result<Arc<[u8]>> {
+        let mut file = std::fs::File::open(path)?;
+        let length = file.metadata()?.len();
+        // Into shared memory at once: large files are not copied once more. What is no file of a
+        // known length is read to its end.
+        let mut bytes: Arc<[u8]> = std::iter::repeat_n(0, usize::try_from(length).unwrap_or(0)).collect();
+        if let Some(whole) = Arc::get_mut(&mut bytes).filter(|_| length > 0)
+            && file.read_exact(whole).is_ok()
+            && file.read(&mut [0])? == 0
+        {
+            return Ok(bytes);
+        }
         std::fs::read(path).map(Into::into)
     }
 

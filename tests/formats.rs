@@ -4,6 +4,8 @@
 
 #[path = "formats/hostile.rs"]
 mod hostile;
+#[path = "formats/oracle.rs"]
+mod oracle;
 #[path = "formats/shared.rs"]
 mod shared;
 #[path = "formats/writers.rs"]
@@ -14,7 +16,7 @@ mod wrong;
 use std::path::Path;
 
 use meniscus::scene::particles::{Kind, ParticleSet, ReadError, Values, estimate_radius, known_extension, read};
-use writers::{Legacy, Mode, Order, Sample, Store, Xml};
+use writers::{Legacy, Mode, Order, Packing, Rows, Sample, Store, Xml};
 
 fn parse(name: &str, bytes: &[u8]) -> Result<ParticleSet, ReadError> {
     read(Path::new(name), bytes)
@@ -116,13 +118,13 @@ fn xml_vtk_gives_back_what_was_written() {
     for count in COUNTS {
         let sample = Sample::new(count);
         for mode in [Mode::Text, Mode::Inline, Mode::AppendedRaw, Mode::AppendedBase64] {
-            for flags in 0..16 {
+            for flags in 0..24 {
                 let how = Xml {
                     mode,
-                    zlib: flags & 1 != 0,
-                    wide: flags & 2 != 0,
-                    order: if flags & 4 != 0 { Order::Big } else { Order::Little },
-                    poly: flags & 8 != 0,
+                    packing: [Packing::None, Packing::Zlib, Packing::Lz4][flags / 8],
+                    wide: flags & 1 != 0,
+                    order: if flags & 2 != 0 { Order::Big } else { Order::Little },
+                    poly: flags & 4 != 0,
                 };
                 let name = if how.poly { "a.vtp" } else { "a.vtu" };
                 let set = parse(name, &writers::xml_vtk(&sample, how)).unwrap_or_else(|e| panic!("{how:?}: {e}"));
@@ -204,6 +206,8 @@ fn ply_reads_over_lists_among_the_vertices() {
     }
 }
 
+const TEXTS: &str = "attribute `kind` holds text, which is given as numbers: 0 for `drop`, 1 for `bubble`";
+
 #[test]
 fn classic_bgeo_gives_back_what_was_written() {
     for count in COUNTS {
@@ -215,8 +219,9 @@ fn classic_bgeo_gives_back_what_was_written() {
             expect_position(&set, &sample, Kind::F32);
             expect(&set, "id", 1, &Values::I32(sample.id.clone()));
             expect(&set, "velocity", 3, &velocity(&sample));
-            assert_eq!(set.attributes.len(), 3);
-            assert_eq!(set.notes, ["attribute `kind` is left out: it holds text"]);
+            expect(&set, "kind", 1, &Values::I32(sample.kinds()));
+            assert_eq!(set.attributes.len(), 4);
+            assert_eq!(set.notes, [TEXTS]);
             assert_eq!(set.radius, Some(0.025));
         }
     }
@@ -239,7 +244,8 @@ fn json_bgeo_gives_back_what_was_written() {
                     expect_position(&set, &sample, Kind::F32);
                     expect(&set, "id", 1, &Values::I32(sample.id.clone()));
                     expect(&set, "v", 3, &velocity(&sample));
-                    assert_eq!(set.notes, ["attribute `kind` is left out: it holds no numbers"]);
+                    expect(&set, "kind", 1, &Values::I32(sample.kinds()));
+                    assert_eq!(set.notes, [TEXTS]);
                     assert_eq!(set.radius, Some(0.025));
                 }
             }
@@ -268,6 +274,65 @@ fn xyz_and_csv_give_back_what_was_written() {
 }
 
 #[test]
+fn json_gives_back_what_was_written() {
+    for count in COUNTS {
+        let sample = Sample::new(count);
+        for rows in [Rows::Bare, Rows::Objects, Rows::Columns, Rows::Flat] {
+            let set = parse("a.json", &writers::json(&sample, rows)).unwrap_or_else(|e| panic!("{rows:?}: {e}"));
+            expect_position(&set, &sample, Kind::F64);
+            if rows == Rows::Bare {
+                assert_eq!(set.attributes.len(), 1);
+                continue;
+            }
+            expect(&set, "id", 1, &Values::I32(sample.id.clone()));
+            expect(&set, "mass", 1, &Values::F64(sample.mass.clone()));
+            let found = set.attribute("velocity").unwrap();
+            assert_eq!(found.components, 3, "{rows:?}");
+            let found: Vec<u32> = found.to_f32().iter().map(|v| v.to_bits()).collect();
+            assert_eq!(found, bits(&sample.velocity), "{rows:?}");
+            assert_eq!(set.attributes.len(), 4, "{rows:?}");
+            let (radius, notes): (_, &[&str]) = match rows {
+                Rows::Objects => (None, &["`name` is left out: it holds text"]),
+                _ => (Some(0.025), &[]),
+            };
+            assert_eq!((set.radius, set.notes.iter().map(String::as_str).collect()), (radius, notes.to_vec()));
+        }
+    }
+    let nested = br#"[{"p": {"x": 1, "y": 2, "z": 3}, "on": true}, {"p": {"x": 4, "y": 5, "z": null}, "on": false}]"#;
+    let set = parse("a.json", nested).unwrap();
+    assert_eq!((set.positions().to_vec(), set.dropped), (vec![[1.0, 2.0, 3.0]], 1), "{set:?}");
+    assert_eq!(parse("a.json", b"[]").unwrap().count, 0);
+}
+
+#[test]
+fn pdb_and_ptc_give_back_what_was_written() {
+    for count in COUNTS {
+        let sample = Sample::new(count);
+        for flags in 0..8 {
+            let order = if flags & 1 != 0 { Order::Big } else { Order::Little };
+            let bytes = writers::pdb(&sample, flags & 2 != 0, order);
+            let bytes = if flags & 4 != 0 { writers::gzip(&bytes) } else { bytes };
+            let set = parse("a.pdb", &bytes).unwrap_or_else(|e| panic!("{count} {flags}: {e}"));
+            expect_position(&set, &sample, Kind::F32);
+            expect(&set, "id", 1, &Values::I32(sample.id.clone()));
+            expect(&set, "velocity", 3, &velocity(&sample));
+        }
+        for version in 0..3 {
+            let set = parse("a.ptc", &writers::ptc(&sample, version)).unwrap_or_else(|e| panic!("{version}: {e}"));
+            expect_position(&set, &sample, Kind::F32);
+            expect(&set, "velocity", 3, &velocity(&sample));
+            assert_eq!(set.radius, Some(0.025));
+            let normal = set.attribute("normal").unwrap().to_f32();
+            assert!(
+                (normal[0] - 1.0).abs() < 1.0e-4 && normal[1].abs() < 1.0e-4 && normal[2].abs() < 1.0e-4,
+                "{normal:?}"
+            );
+            assert!(normal.get(3..6).is_none_or(|none| none == [0.0; 3]));
+        }
+    }
+}
+
+#[test]
 fn csv_takes_the_spellings_of_several_writers() {
     let with = |header: &str| format!("{header}\n1,2,3,9\n4,5,6,8\n");
     let headers = [
@@ -284,7 +349,7 @@ fn csv_takes_the_spellings_of_several_writers() {
     for header in headers {
         for text in [with(header), with(header).replace(',', ";"), with(header).replace(',', "\t")] {
             let set = parse("a.csv", text.as_bytes()).unwrap_or_else(|e| panic!("{header}: {e}"));
-            assert_eq!(set.positions(), [[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]], "{header}");
+            assert_eq!(*set.positions(), [[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]], "{header}");
             expect(&set, "a", 1, &Values::I32(vec![9, 8]));
         }
     }
@@ -340,7 +405,7 @@ fn rows_that_are_not_finite_go_from_all_attributes() {
 #[test]
 fn whole_files_without_particles_are_empty_sets_with_a_note() {
     let none = Sample::new(0);
-    let raw = Xml { mode: Mode::AppendedRaw, zlib: true, wide: false, order: Order::Little, poly: false };
+    let raw = Xml { mode: Mode::AppendedRaw, packing: Packing::Zlib, wide: false, order: Order::Little, poly: false };
     let files = [
         ("a.vtk", writers::legacy_vtk(&none, Legacy { binary: true, five: false, poly: false })),
         ("a.vtk", writers::legacy_vtk(&none, Legacy { binary: false, five: true, poly: true })),

@@ -8,7 +8,9 @@ use crate::engine::Report;
 pub fn passes(reports: &[Report]) -> String {
     let mut text = String::from("    GPU ms   runs  pass\n");
     for pass in reports.iter().flat_map(|r| &r.passes) {
-        let ms = pass.gpu_ms.map_or_else(|| "-".to_owned(), |ms| format!("{ms:.3}"));
+        // One that shares another's time has none of its own.
+        let none = || if pass.timed_with.is_some() { "\"".to_owned() } else { "-".to_owned() };
+        let ms = pass.gpu_ms.map_or_else(none, |ms| format!("{ms:.3}"));
         _ = writeln!(text, "{ms:>10} {:>6}  {}", pass.runs, pass.path);
     }
     let total: Option<f64> = reports.iter().map(Report::gpu_ms).sum();
@@ -25,7 +27,7 @@ mod tests {
 
     #[test]
     fn passes_are_listed_in_order_with_their_sum() {
-        let pass = |path: &str, gpu_ms| PassReport { path: path.into(), runs: 1, gpu_ms };
+        let pass = |path: &str, gpu_ms| PassReport { path: path.into(), runs: 1, gpu_ms, timed_with: None };
         let report = |passes| Report { passes, encode_ms: 0.25, ..Report::default() };
         let timed = passes(&[report(vec![pass("grid/scan", Some(1.5)), pass("shade", Some(2.25))])]);
         let expected = "    GPU ms   runs  pass\n     1.500      1  grid/scan\n     2.250      1  shade\n     3.750         on the GPU together; 0.250 ms encoding on the CPU\n";

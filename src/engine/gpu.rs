@@ -20,6 +20,8 @@ pub struct GpuOptions {
     /// Features wanted beyond those that plans may need; those that the adapter lacks are left
     /// out.
     pub features: Features,
+    /// Features to do without even where the adapter has them: to see what others see.
+    pub without: Features,
 }
 
 /// One adapter of the machine, as plain data.
@@ -46,6 +48,7 @@ const WANTED: &[Features] = &[
     Features::FLOAT32_BLENDABLE,
     Features::TIMESTAMP_QUERY,
     Features::TIMESTAMP_QUERY_INSIDE_ENCODERS,
+    Features::TIMESTAMP_QUERY_INSIDE_PASSES,
     Features::DEPTH32FLOAT_STENCIL8,
     Features::RG11B10UFLOAT_RENDERABLE,
     Features::BGRA8UNORM_STORAGE,
@@ -116,7 +119,7 @@ impl Gpu {
         let adapter = pollster::block_on(instance.request_adapter(&request)).map_err(|e| errors::no_adapter(&e))?;
         let descriptor = wgpu::DeviceDescriptor {
             label: Some("meniscus"),
-            required_features: adapter.features() & (wanted_features() | options.features),
+            required_features: (adapter.features() & (wanted_features() | options.features)) - options.without,
             required_limits: adapter.limits(),
             ..wgpu::DeviceDescriptor::default()
         };

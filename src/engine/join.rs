@@ -1,7 +1,5 @@
 //! Which draws can share a render pass with the ones before them (rule 27): those with equal
 //! targets that load them and touch nothing that the others write.
-//!
-//! The engine joins them only while nobody times passes: times are of render passes.
 
 use super::pool::{Handle, Pool, candidates};
 use crate::plan::model::{Bound, ColorTarget, DepthTarget, Draw, ObjectRef, Pass, PassKind, Plan};

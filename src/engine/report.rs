@@ -9,8 +9,14 @@ pub struct Report {
     pub frame: u64,
     /// Passes that ran, in program order.
     pub passes: Vec<PassReport>,
-    /// CPU time of encoding and submitting, in milliseconds.
+    /// CPU time of a frame up to its submission, in milliseconds.
     pub encode_ms: f64,
+    /// CPU time of submitting, in milliseconds.
+    pub submit_ms: f64,
+    /// Passes of wgpu's that were begun: passes that follow each other share them.
+    pub compute_passes: u32,
+    pub render_passes: u32,
+    pub submissions: u32,
     /// Counted buffers that were settled. Empty until the GPU's answer is there.
     pub counts: Vec<CountReport>,
     /// Whether the GPU's answer (times, counts) is in it.
@@ -25,6 +31,9 @@ pub struct PassReport {
     pub runs: u32,
     /// GPU time of all its runs in milliseconds, where the device can tell.
     pub gpu_ms: Option<f64>,
+    /// The pass whose time holds this one's: they share a pass of wgpu's, and the device tells
+    /// no time inside of it.
+    pub timed_with: Option<String>,
 }
 
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -52,7 +61,7 @@ impl Report {
 
     /// GPU time of all passes in milliseconds, where the device can tell.
     pub fn gpu_ms(&self) -> Option<f64> {
-        self.passes.iter().map(|p| p.gpu_ms).sum()
+        self.passes.iter().filter(|p| p.timed_with.is_none()).map(|p| p.gpu_ms).sum()
     }
 }
 
@@ -61,7 +70,7 @@ impl Report {
 pub struct BuildReport {
     pub pipelines_built: usize,
     pub pipelines_reused: usize,
-    /// Draws that share the render pass of the one before them while nobody times passes.
+    /// Draws that share the render pass of the one before them.
     pub draws_joined: usize,
     /// Bytes of textures and buffers that the runner holds. Inputs count from their first use.
     pub memory_bytes: u64,

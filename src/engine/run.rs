@@ -1,18 +1,17 @@
 //! Carrying out a frame: one encoder, passes in program order, `Steps` as often as asked.
 
 use std::collections::BTreeMap;
-use std::ops::Range;
 use std::time::Instant;
 
 use super::bind::{Bench, Variant, references};
-use super::encode::{self, Encoding};
+use super::encode::Recorder;
 use super::errors;
 use super::gpu::Gpu;
 use super::prepare::{Engine, Runner};
 use super::report::Report;
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::graph::value::Value;
-use crate::plan::model::{ObjectRef, PassKind, Plan};
+use crate::plan::model::{ObjectRef, Plan};
 
 /// What changes from frame to frame.
 #[derive(Clone, Copy)]
@@ -57,9 +56,6 @@ pub struct StepInfo {
     pub delta: f64,
 }
 
-/// Passes to a submission, so that a thousand steps do not make one huge one.
-const PASSES_TO_A_SUBMISSION: usize = 512;
-
 impl Runner {
     /// Runs a frame. Waits for nothing.
     ///
@@ -91,27 +87,6 @@ impl Runner {
         }
     }
 
-    /// Which passes the device refuses, found by encoding each on its own.
-    fn blame(&mut self, gpu: &Gpu) -> Option<Diagnostics> {
-        let mut found = Diagnostics::new();
-        for index in 0..self.plan.passes.len() {
-            let refused = match self.ensure_variant(gpu, index) {
-                Err(diagnostic) => Some(diagnostic),
-                Ok(key) => {
-                    let mut recorder = Recorder::new(gpu);
-                    let pass = &self.plan.passes[index];
-                    let encoded = errors::scoped(gpu, || {
-                        self.record(&mut recorder, index, key, None);
-                        recorder.encoder.finish()
-                    });
-                    encoded.err().map(|e| errors::refused("the commands of", &pass.path, pass.span, &e))
-                }
-            };
-            found.0.extend(refused);
-        }
-        Some(found).filter(|f| !f.is_empty())
-    }
-
     /// Waits until the GPU is done and gives the last frame's report, with times and counts.
     ///
     /// # Errors
@@ -125,8 +100,8 @@ impl Runner {
             let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
             self.timing.capture(gpu, &self.plan, &mut encoder, &self.fixed.stats);
             gpu.queue().submit([encoder.finish()]);
-            let encode_ms = self.timing.preliminary(&self.plan).encode_ms;
-            self.timing.submitted(encode_ms);
+            let now = self.timing.preliminary(&self.plan);
+            self.timing.submitted(now.encode_ms + now.submit_ms);
             gpu.wait()?;
             self.timing.collect(&self.plan);
         }
@@ -146,8 +121,7 @@ impl Runner {
         report
     }
 
-    /// Whether GPU times are taken, where the device can. Without them, adjacent draws with equal
-    /// targets become one render pass.
+    /// Whether GPU times are taken, where the device can.
     pub fn time_passes(&mut self, on: bool) {
         self.timing.turn(on);
     }
@@ -196,93 +170,30 @@ impl Runner {
 
     fn encode(&mut self, gpu: &Gpu, frame: &Frame<'_>, steps: &[StepInfo]) -> Result<(), Diagnostic> {
         let mut recorder = Recorder::new(gpu);
-        recorder.encoder.clear_buffer(&self.fixed.stats, 0, None);
+        if self.timing.has_counts() {
+            recorder.encoder().clear_buffer(&self.fixed.stats, 0, None);
+        }
         let mut staged = 0;
         let mut at = 0;
         while at < self.plan.passes.len() {
             let Some(block) = self.plan.steps.iter().position(|s| s.passes.contains(&at)) else {
                 let next = (at..self.plan.passes.len()).find(|p| self.plan.steps.iter().any(|s| s.passes.start == *p));
                 let end = next.unwrap_or(self.plan.passes.len()).max(at + 1);
-                self.encode_range(gpu, frame, &mut recorder, at..end)?;
+                self.encode_range(gpu, frame.only, &mut recorder, at..end)?;
                 at = end;
                 continue;
             };
             let range = self.plan.steps[block].passes.clone();
             for info in steps.iter().filter(|info| info.steps == block) {
-                self.uniforms.begin_step(&mut recorder.encoder, block, &mut staged);
-                self.encode_range(gpu, frame, &mut recorder, range.clone())?;
+                self.uniforms.begin_step(recorder.encoder(), block, &mut staged);
+                self.encode_range(gpu, frame.only, &mut recorder, range.clone())?;
                 self.turn(info);
             }
             at = range.end.max(at + 1);
         }
-        self.timing.capture(gpu, &self.plan, &mut recorder.encoder, &self.fixed.stats);
-        recorder.submit(gpu);
+        self.timing.capture(gpu, &self.plan, recorder.encoder(), &self.fixed.stats);
+        self.timing.handed_over(recorder.submit(gpu));
         Ok(())
-    }
-
-    fn encode_range(
-        &mut self,
-        gpu: &Gpu,
-        frame: &Frame<'_>,
-        recorder: &mut Recorder,
-        range: Range<usize>,
-    ) -> Result<(), Diagnostic> {
-        let chosen = |index: &usize| frame.only.is_none_or(|only| only.get(*index) != Some(&false));
-        let chosen: Vec<usize> = range.filter(chosen).collect();
-        let together = |a: &usize, b: &usize| !self.timing.is_on() && self.leaders[*a] == self.leaders[*b];
-        for group in chosen.chunk_by(together).map(<[usize]>::to_vec).collect::<Vec<_>>() {
-            self.encode_group(gpu, recorder, &group)?;
-        }
-        Ok(())
-    }
-
-    /// Encodes a pass, or draws that share a render pass.
-    fn encode_group(&mut self, gpu: &Gpu, recorder: &mut Recorder, group: &[usize]) -> Result<(), Diagnostic> {
-        let mut keys = Vec::with_capacity(group.len());
-        for index in group {
-            keys.push(self.ensure_variant(gpu, *index)?);
-        }
-        if let ([index], [key]) = (group, &keys[..]) {
-            let timed =
-                self.variants[*index].get(key).is_some_and(|v| encode::can_be_timed(v, self.timing.times_encoders()));
-            let pair = self.timing.mark(*index, timed);
-            self.record(recorder, *index, *key, pair);
-        } else {
-            for index in group {
-                self.timing.mark(*index, false);
-            }
-            let parts = group.iter().zip(&keys).filter_map(|(index, key)| self.part(*index, *key));
-            encode::draw::encode(&mut self.encoding(recorder, None), &parts.collect::<Vec<_>>());
-        }
-        recorder.count(gpu, group.len());
-        Ok(())
-    }
-
-    fn part(&self, index: usize, key: usize) -> Option<encode::draw::Part<'_>> {
-        let pass = &self.plan.passes[index];
-        let (PassKind::Draw(draw), Variant::Draw(variant)) = (&pass.kind, self.variants[index].get(&key)?) else {
-            return None;
-        };
-        Some(encode::draw::Part { pass, draw, pipeline: self.pipelines[index].as_deref(), variant })
-    }
-
-    fn encoding<'a>(&'a self, recorder: &'a mut Recorder, pair: Option<u32>) -> Encoding<'a> {
-        Encoding {
-            encoder: &mut recorder.encoder,
-            plan: &self.plan,
-            pool: &self.pool,
-            fixed: &self.fixed,
-            rotation: &self.rotation,
-            timing: &self.timing,
-            pair,
-            loads_are_free: self.loads_are_free,
-        }
-    }
-
-    fn record(&self, recorder: &mut Recorder, index: usize, key: usize, pair: Option<u32>) {
-        let Some(variant) = self.variants[index].get(&key) else { return };
-        let pipeline = self.pipelines[index].as_deref();
-        self.encoding(recorder, pair).pass(&self.plan.passes[index], pipeline, variant);
     }
 
     /// Makes what the pass needs for the current rotation, if it is not there.
@@ -311,7 +222,7 @@ impl Runner {
     }
 
     /// One number for the rotations of all rings that a pass touches.
-    fn rotation_key(&self, index: usize) -> usize {
+    pub(super) fn rotation_key(&self, index: usize) -> usize {
         self.rings_of[index]
             .iter()
             .fold(0, |key, ring| key * self.plan.rings[*ring].objects.len() + self.rotation[*ring])
@@ -341,31 +252,6 @@ impl Runner {
 
 /// By key of [`Runner::rotation_key`].
 pub(super) type Variants = BTreeMap<usize, Variant>;
-
-struct Recorder {
-    encoder: wgpu::CommandEncoder,
-    passes: usize,
-}
-
-impl Recorder {
-    fn new(gpu: &Gpu) -> Self {
-        let label = Some("frame");
-        let encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor { label });
-        Self { encoder, passes: 0 }
-    }
-
-    /// Counts passes, and submits now and then.
-    fn count(&mut self, gpu: &Gpu, passes: usize) {
-        self.passes += passes;
-        if self.passes >= PASSES_TO_A_SUBMISSION {
-            std::mem::replace(self, Self::new(gpu)).submit(gpu);
-        }
-    }
-
-    fn submit(self, gpu: &Gpu) {
-        gpu.queue().submit([self.encoder.finish()]);
-    }
-}
 
 /// How many runs of passes a frame has, at most.
 fn runs(plan: &Plan, steps: &[StepInfo]) -> u32 {

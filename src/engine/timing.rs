@@ -4,6 +4,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU8, Ordering};
 
 use super::bind::stat_of;
+use super::encode::Begun;
 use super::gpu::Gpu;
 use super::report::{CountReport, PassReport, Report};
 use crate::plan::model::{ObjectKind, PassKind, Plan};
@@ -30,9 +31,13 @@ struct Slot {
 struct Frame {
     number: u64,
     sequence: u64,
+    /// With submitting.
     encode_ms: f64,
+    begun: Begun,
     /// The pass of each pair of queries.
     marks: Vec<usize>,
+    /// Passes whose time is in that of another, which began what they share.
+    with: Vec<(usize, usize)>,
     /// How often each pass ran.
     runs: Vec<u32>,
 }
@@ -43,6 +48,9 @@ pub(super) struct Timing {
     resolved: Option<wgpu::Buffer>,
     pairs: u32,
     in_encoders: bool,
+    /// Whether the device tells time inside of wgpu's passes. Where it does not, passes that
+    /// share one have one time.
+    in_passes: bool,
     /// Whether anybody wants times.
     wanted: bool,
     /// Nanoseconds to a tick.
@@ -64,6 +72,7 @@ impl Timing {
             resolved: None,
             pairs: 0,
             in_encoders: features.contains(wgpu::Features::TIMESTAMP_QUERY_INSIDE_ENCODERS),
+            in_passes: features.contains(wgpu::Features::TIMESTAMP_QUERY_INSIDE_PASSES),
             wanted: true,
             period: gpu.queue().get_timestamp_period(),
             stats_bytes: settles as u64 * 4,
@@ -118,6 +127,7 @@ impl Timing {
         self.now.number = number;
         self.now.sequence += 1;
         self.now.marks.clear();
+        self.now.with.clear();
         self.now.runs.clear();
         self.now.runs.resize(plan.passes.len(), 0);
         self.captured = None;
@@ -127,38 +137,88 @@ impl Timing {
         self.wanted = on;
     }
 
-    pub fn is_on(&self) -> bool {
-        self.wanted && self.pairs > 0
-    }
-
     /// Notes that a pass runs, and gives it a pair of queries if it is to be timed and there
-    /// are any left.
-    pub fn mark(&mut self, pass: usize, timed: bool) -> Option<u32> {
+    /// are any left. `joins` says that it shares a pass of wgpu's with the one before it.
+    pub fn mark(&mut self, pass: usize, timed: bool, joins: bool) -> Option<u32> {
         self.now.runs[pass] += 1;
         let pair = self.now.marks.len() as u32;
-        if !timed || !self.wanted || pair >= self.pairs {
+        if !timed || !self.wanted || self.pairs == 0 {
+            return None;
+        }
+        if joins && !self.in_passes {
+            let leader = self.now.marks.last().copied();
+            self.now.with.extend(leader.filter(|leader| *leader != pass).map(|leader| (pass, leader)));
+            return None;
+        }
+        if pair >= self.pairs {
             return None;
         }
         self.now.marks.push(pass);
         Some(pair)
     }
 
+    /// For a render pass that is one of those that make up a pass.
     pub fn render(&self, pair: Option<u32>, first: bool, last: bool) -> Option<wgpu::RenderPassTimestampWrites<'_>> {
-        let (begin, end) = queries(pair?, first, last)?;
+        self.render_from_to(first.then_some(pair?), last.then_some(pair?))
+    }
+
+    /// For a render pass of so many draws, the first of which has this pair.
+    pub fn render_of(&self, pair: Option<u32>, draws: usize) -> Option<wgpu::RenderPassTimestampWrites<'_>> {
+        self.render_from_to(pair, self.nth(pair, if self.in_passes { draws.saturating_sub(1) } else { 0 }))
+    }
+
+    fn render_from_to(&self, from: Option<u32>, to: Option<u32>) -> Option<wgpu::RenderPassTimestampWrites<'_>> {
+        if from.is_none() && to.is_none() {
+            return None;
+        }
         Some(wgpu::RenderPassTimestampWrites {
             query_set: self.queries.as_ref()?,
-            beginning_of_pass_write_index: begin,
-            end_of_pass_write_index: end,
+            beginning_of_pass_write_index: from.map(|pair| pair * 2),
+            end_of_pass_write_index: to.map(|pair| pair * 2 + 1),
         })
     }
 
-    pub fn compute(&self, pair: Option<u32>, first: bool, last: bool) -> Option<wgpu::ComputePassTimestampWrites<'_>> {
-        let (begin, end) = queries(pair?, first, last)?;
+    /// The pair of the nth of draws that share a render pass: they were marked one after the other.
+    fn nth(&self, first: Option<u32>, nth: usize) -> Option<u32> {
+        let marked = (self.now.marks.len() as u32).checked_sub(1)?;
+        first.map(|first| (first + nth as u32).min(marked))
+    }
+
+    /// Ends the time of one draw and begins that of the next.
+    pub fn write_between_draws(&self, render: &mut wgpu::RenderPass<'_>, first: Option<u32>, nth: usize) {
+        if nth == 0 || !self.in_passes {
+            return;
+        }
+        let (before, now) = (self.nth(first, nth - 1), self.nth(first, nth));
+        if let (Some(before), Some(now), Some(queries)) = (before, now, &self.queries)
+            && before != now
+        {
+            render.write_timestamp(queries, before * 2 + 1);
+            render.write_timestamp(queries, now * 2);
+        }
+    }
+
+    /// For a compute pass that begins with dispatches of this pair, where the device tells no
+    /// time inside of it.
+    pub fn compute(&self, pair: Option<u32>) -> Option<wgpu::ComputePassTimestampWrites<'_>> {
+        let pair = pair.filter(|_| !self.in_passes)?;
         Some(wgpu::ComputePassTimestampWrites {
             query_set: self.queries.as_ref()?,
-            beginning_of_pass_write_index: begin,
-            end_of_pass_write_index: end,
+            beginning_of_pass_write_index: Some(pair * 2),
+            end_of_pass_write_index: Some(pair * 2 + 1),
         })
+    }
+
+    /// Writes the begin (0) or end (1) of a pair inside a compute pass, where the device can.
+    pub fn write_in_compute(&self, compute: &mut wgpu::ComputePass<'_>, pair: Option<u32>, end: u32) {
+        if let (Some(pair), Some(queries), true) = (pair, &self.queries, self.in_passes) {
+            compute.write_timestamp(queries, pair * 2 + end);
+        }
+    }
+
+    /// Whether any pass settles a count.
+    pub fn has_counts(&self) -> bool {
+        self.stats_bytes > 0
     }
 
     /// Whether what is no pass can be timed.
@@ -196,6 +256,11 @@ impl Timing {
 
     pub fn is_captured(&self) -> bool {
         self.captured.is_some()
+    }
+
+    /// Notes what was submitted.
+    pub fn handed_over(&mut self, begun: Begun) {
+        self.now.begun = begun;
     }
 
     /// Asks for the captured answer, after the submission.
@@ -254,22 +319,26 @@ impl Timing {
         let ran = (0..plan.passes.len()).filter(|p| frame.runs[*p] > 0);
         for (pass, index) in report.passes.iter_mut().zip(ran) {
             pass.gpu_ms = spent[index];
+            let with = frame.with.iter().find(|(pass, _)| *pass == index);
+            pass.timed_with = with.map(|(_, leader)| plan.passes[*leader].path.clone());
         }
         report.counts = counts(plan, frame, stats);
         report
     }
 }
 
-fn queries(pair: u32, first: bool, last: bool) -> Option<(Option<u32>, Option<u32>)> {
-    (first || last).then(|| (first.then_some(pair * 2), last.then_some(pair * 2 + 1)))
-}
-
 fn report(plan: &Plan, frame: &Frame) -> Report {
     let ran = plan.passes.iter().zip(&frame.runs).filter(|(_, runs)| **runs > 0);
     Report {
         frame: frame.number,
-        passes: ran.map(|(p, runs)| PassReport { path: p.path.clone(), runs: *runs, gpu_ms: None }).collect(),
-        encode_ms: frame.encode_ms,
+        passes: ran
+            .map(|(p, runs)| PassReport { path: p.path.clone(), runs: *runs, gpu_ms: None, timed_with: None })
+            .collect(),
+        encode_ms: (frame.encode_ms - frame.begun.submit_ms).max(0.0),
+        submit_ms: frame.begun.submit_ms,
+        compute_passes: frame.begun.compute_passes,
+        render_passes: frame.begun.render_passes,
+        submissions: frame.begun.submissions,
         counts: Vec::new(),
         complete: false,
     }

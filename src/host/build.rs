@@ -252,7 +252,7 @@ fn fill(engine: &Engine, runner: &mut Runner, id: usize, input: &Input) -> Resul
                 Some(column) => convert::rows(column, buffer.item.as_ref(), buffer.stride)
                     .map_err(|why| Diagnostic::error(Code::BINDING_MISMATCH, why).at(object.span, "asked for here"))?,
                 // An optional attribute that the file lacks is all zeros.
-                None => vec![0; usize::try_from(buffer.bytes()).unwrap_or(0)],
+                None => vec![0; usize::try_from(buffer.bytes()).unwrap_or(0)].into(),
             };
             runner.upload_buffer(engine, id, &bytes)
         }

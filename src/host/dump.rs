@@ -262,7 +262,7 @@ mod tests {
     #[test]
     fn a_dumped_ply_reads_back_as_particles() {
         let set = particles::read(Path::new("a.ply"), &dump(DumpKind::Ply)).expect("particles");
-        assert_eq!(set.positions(), [[1.0, 2.5, -3.0], [0.0, 0.5, 4.0]]);
+        assert_eq!(*set.positions(), [[1.0, 2.5, -3.0], [0.0, 0.5, 4.0]]);
         assert_eq!(set.attribute("id").map(particles::Attribute::to_u32), Some(vec![7, 9]));
     }
 

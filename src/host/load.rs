@@ -282,7 +282,7 @@ impl Loader<'_> {
                     Input::Particles(particles) => Some(particles),
                     _ => None,
                 });
-                let (positions, radius) = seen.map_or((Vec::new(), 0.0), |p| (p.set.positions(), p.radius_m));
+                let (positions, radius) = seen.map_or_else(Default::default, |p| (p.set.positions(), p.radius_m));
                 framing::frame(&positions, radius, viewport, job.fov_degrees.unwrap_or(framing::FOV_DEGREES))
             }
         };

@@ -55,8 +55,8 @@ pub fn renderable(files: &dyn Files, path: &Path) -> Result<Arc<[u8]>, Diagnosti
         return Ok(bytes);
     }
     let message = format!("`{}` is neither a scene (.ron) nor a particle file", path.display());
-    let ends = ".vtk, .vtu, .vtp, .ply, .bgeo, .bgeo.gz, .xyz and .csv";
-    Err(Diagnostic::error(Code::USAGE, message).hint(format!("particle files end in {ends}")))
+    let ends: Vec<String> = particles::extensions().collect();
+    Err(Diagnostic::error(Code::USAGE, message).hint(format!("particle files end in {}", ends.join(", "))))
 }
 
 /// The scene that the program carries.

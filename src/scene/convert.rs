@@ -1,5 +1,7 @@
 //! Particle attributes as the bytes that a shader's type wants.
 
+use std::borrow::Cow;
+
 use super::particles::{Attribute, Values};
 use crate::shader::reflect::{Scalar, Type};
 
@@ -32,11 +34,12 @@ fn collect(ty: &Type, offset: u32, out: &mut Vec<Lane>) {
     }
 }
 
-/// The rows of `attribute` as items of `stride` bytes and of type `item` (absent: `f32`s).
+/// The rows of `attribute` as items of `stride` bytes and of type `item` (absent: `f32`s); without a
+/// copy if that is how they are.
 ///
 /// # Errors
 /// If the item has another number of components than the attribute; the text tells both.
-pub fn rows(attribute: &Attribute, item: Option<&Type>, stride: u32) -> Result<Vec<u8>, String> {
+pub fn rows<'a>(attribute: &'a Attribute, item: Option<&Type>, stride: u32) -> Result<Cow<'a, [u8]>, String> {
     let components = attribute.components;
     let lanes = match item {
         // An array of a type that holds fewer numbers than a row is read number by number.
@@ -65,14 +68,17 @@ fn repeated(lanes: Vec<Lane>, stride: u32, components: usize) -> Vec<Lane> {
     (0..times).flat_map(|i| lanes.iter().map(move |(at, s)| (at + i * stride, *s)).collect::<Vec<_>>()).collect()
 }
 
-fn pack(values: &Values, components: usize, lanes: &[Lane], row: usize) -> Vec<u8> {
+fn pack<'a>(values: &'a Values, components: usize, lanes: &[Lane], row: usize) -> Cow<'a, [u8]> {
     let dense = row == components * 4 && lanes.iter().enumerate().all(|(i, (at, _))| *at as usize == i * 4);
     let all = |scalar| lanes.iter().all(|(_, s)| *s == scalar);
-    match () {
-        () if dense && all(Scalar::F32) => bytemuck::cast_slice(&values.to_f32()).to_vec(),
-        () if dense && all(Scalar::U32) => bytemuck::cast_slice(&values.to_u32()).to_vec(),
-        () if dense && all(Scalar::I32) => bytemuck::cast_slice(&values.to_i32()).to_vec(),
-        () => scatter(values, components, lanes, row),
+    match values {
+        Values::F32(floats) if dense && all(Scalar::F32) => Cow::Borrowed(bytemuck::cast_slice(floats)),
+        Values::U32(unsigned) if dense && all(Scalar::U32) => Cow::Borrowed(bytemuck::cast_slice(unsigned)),
+        Values::I32(signed) if dense && all(Scalar::I32) => Cow::Borrowed(bytemuck::cast_slice(signed)),
+        _ if dense && all(Scalar::F32) => Cow::Owned(bytemuck::cast_slice(&values.to_f32()).to_vec()),
+        _ if dense && all(Scalar::U32) => Cow::Owned(bytemuck::cast_slice(&values.to_u32()).to_vec()),
+        _ if dense && all(Scalar::I32) => Cow::Owned(bytemuck::cast_slice(&values.to_i32()).to_vec()),
+        _ => Cow::Owned(scatter(values, components, lanes, row)),
     }
 }
 
@@ -124,9 +130,9 @@ mod tests {
         let wide = attribute(3, Values::F64(vec![1.0, 2.0, 3.0, 4.0, 5.0, 6.0]));
         let narrow = attribute(3, Values::F32(vec![1.0, 2.0, 3.0, 4.0, 5.0, 6.0]));
         for set in [&wide, &narrow] {
-            assert_eq!(rows(set, Some(&packed3()), 12).as_ref(), Ok(&expected));
-            assert_eq!(rows(set, Some(&Type::Scalar(Scalar::F32)), 4).as_ref(), Ok(&expected));
-            assert_eq!(rows(set, None, 12).as_ref(), Ok(&expected));
+            assert_eq!(rows(set, Some(&packed3()), 12).as_deref(), Ok(&*expected));
+            assert_eq!(rows(set, Some(&Type::Scalar(Scalar::F32)), 4).as_deref(), Ok(&*expected));
+            assert_eq!(rows(set, None, 12).as_deref(), Ok(&*expected));
         }
     }
 
@@ -134,11 +140,11 @@ mod tests {
     fn whole_numbers_convert_to_the_declared_type() {
         let ids = attribute(1, Values::I64(vec![0, 7, -1, 5_000_000_000]));
         let unsigned = rows(&ids, Some(&Type::Scalar(Scalar::U32)), 4);
-        assert_eq!(unsigned, Ok(bytemuck::cast_slice(&[0u32, 7, 0, u32::MAX]).to_vec()));
+        assert_eq!(unsigned.as_deref(), Ok(bytemuck::cast_slice(&[0u32, 7, 0, u32::MAX])));
         let signed = rows(&ids, Some(&Type::Scalar(Scalar::I32)), 4);
-        assert_eq!(signed, Ok(bytemuck::cast_slice(&[0i32, 7, -1, i32::MAX]).to_vec()));
+        assert_eq!(signed.as_deref(), Ok(bytemuck::cast_slice(&[0i32, 7, -1, i32::MAX])));
         let floats = rows(&ids, Some(&Type::Scalar(Scalar::F32)), 4);
-        assert_eq!(floats, Ok(bytemuck::cast_slice(&[0f32, 7.0, -1.0, 5e9]).to_vec()));
+        assert_eq!(floats.as_deref(), Ok(bytemuck::cast_slice(&[0f32, 7.0, -1.0, 5e9])));
     }
 
     #[test]
@@ -153,6 +159,9 @@ mod tests {
     fn another_number_of_components_is_an_error() {
         let density = attribute(1, Values::F32(vec![1.0]));
         let error = rows(&density, Some(&packed3()), 12);
-        assert_eq!(error, Err("attribute `x` has 1 numbers a row, which `Packed3` cannot hold".into()));
+        assert_eq!(
+            error.map(Cow::into_owned),
+            Err("attribute `x` has 1 numbers a row, which `Packed3` cannot hold".into())
+        );
     }
 }

@@ -44,13 +44,32 @@ const KNOWN: &[ImageFormat] = &[ImageFormat::Png, ImageFormat::Jpeg, ImageFormat
 /// # Errors
 /// If the bytes are no picture of a known format, are cut short, or claim an impossible size.
 pub fn read(bytes: &[u8]) -> Result<Image, ImageError> {
+    decode(bytes, KNOWN, LARGEST_MEMORY).map(linear)
+}
+
+/// Decodes a picture with 8 bits a channel, as a material takes it: PNG or JPEG, of no more than
+/// `most_texels`. Deeper channels keep their upper 8 bits.
+///
+/// # Errors
+/// As [`read()`].
+pub fn read_stored(bytes: &[u8], most_texels: usize) -> Result<Stored, ImageError> {
+    let memory = (most_texels as u64).saturating_mul(4).min(LARGEST_MEMORY);
+    let decoded = decode(bytes, &[ImageFormat::Png, ImageFormat::Jpeg], memory)?;
+    let (width, height) = (decoded.width(), decoded.height());
+    Ok(Stored { width, height, texels: decoded.into_rgba8().as_chunks::<4>().0.to_vec() })
+}
+
+fn decode(bytes: &[u8], known: &[ImageFormat], memory: u64) -> Result<DynamicImage, ImageError> {
     let fault = |message: String| ImageError { message, hint: None };
     if bytes.is_empty() {
         return Err(fault("the file is empty".into()));
     }
-    let format = ::image::guess_format(bytes).ok().filter(|f| KNOWN.contains(f)).ok_or_else(|| ImageError {
+    let format = ::image::guess_format(bytes).ok().filter(|f| known.contains(f)).ok_or_else(|| ImageError {
         message: "byte 0: this is not the start of a picture that can be read".into(),
-        hint: Some("known are PNG, JPEG, Radiance HDR (.hdr) and OpenEXR (.exr)".into()),
+        hint: Some(match known.len() {
+            2 => "known are PNG and JPEG".into(),
+            _ => "known are PNG, JPEG, Radiance HDR (.hdr) and OpenEXR (.exr)".into(),
+        }),
     })?;
     let dimensions = ImageReader::with_format(Cursor::new(bytes), format).into_dimensions();
     let (width, height) = dimensions.map_err(|e| fault(reason(&e, format)))?;
@@ -59,14 +78,16 @@ pub fn read(bytes: &[u8]) -> Result<Image, ImageError> {
             "the header says {width} x {height} pixels; a picture has 1 to {LARGEST_SIDE} each way"
         )));
     }
+    if u64::from(width) * u64::from(height) * 4 > memory {
+        return Err(fault(format!("{width} x {height} pixels are more than there is room for")));
+    }
     let mut reader = ImageReader::with_format(Cursor::new(bytes), format);
     let mut limits = Limits::default();
     limits.max_image_width = Some(LARGEST_SIDE);
     limits.max_image_height = Some(LARGEST_SIDE);
     limits.max_alloc = Some(LARGEST_MEMORY);
     reader.limits(limits);
-    let decoded = reader.decode().map_err(|e| fault(reason(&e, format)))?;
-    Ok(linear(decoded))
+    reader.decode().map_err(|e| fault(reason(&e, format)))
 }
 
 fn reason(error: &::image::ImageError, format: ImageFormat) -> String {

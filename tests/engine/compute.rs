@@ -1,6 +1,6 @@
 //! Dispatches, counted buffers and what follows from counts.
 
-use meniscus::engine::Engine;
+use meniscus::engine::{Engine, Gpu, GpuOptions};
 use meniscus::plan::model::*;
 
 use crate::support::*;
@@ -110,4 +110,51 @@ pub fn more_than_65535_groups_are_folded(engine: &mut Engine) {
     assert_eq!((list[0], raw), (70_000, 70_000));
     // Two rows of 65,535: every index once, the rest of the second row beyond the count.
     assert_eq!(seen, [131_070, 131_069, 70_000]);
+}
+
+/// Dispatches that follow each other share a compute pass, what is none parts them, and each sees
+/// what the ones before wrote.
+pub fn dispatches_share_a_pass(engine: &mut Engine) {
+    const ADD: &str = "
+var<storage, read> src: array<u32>;
+var<storage, read_write> out: array<u32>;
+@compute @workgroup_size(1) fn main() { out[0] = src[0] + 1u; }";
+    for timed in [false, true] {
+        let mut plan = new_plan();
+        let ids: Vec<_> = (0..=20).map(|i| plan.buffer(&format!("b{i}"), 1)).collect();
+        for (nth, pair) in ids.windows(2).enumerate() {
+            if nth == 10 {
+                plan.pass("copy", PassKind::Copy { from: plan.whole(pair[0]), to: plan.whole(pair[1]) });
+                continue;
+            }
+            let bound = [("src", read_only(pair[0])), ("out", storage(pair[1]))];
+            plan.compute(&format!("add{nth}"), ADD, &bound, Dispatch::Groups([1, 1, 1]));
+        }
+        let mut runner = prepare(engine, plan);
+        runner.time_passes(timed);
+        let report = run(engine, &mut runner);
+        assert_eq!((report.compute_passes, report.render_passes, report.submissions), (2, 0, 1));
+        assert_eq!(words(engine, &runner, ids[20]), [19]);
+        assert!(report.passes.iter().all(|p| p.gpu_ms.is_some() == timed && p.timed_with.is_none()), "{report:?}");
+        assert!(report.submit_ms > 0.0 && report.encode_ms > 0.0);
+    }
+}
+
+/// A device that tells no time inside of passes gives those that share one a time together.
+pub fn shared_passes_have_one_time(_: &mut Engine) {
+    const ADD: &str = "
+var<storage, read_write> out: array<u32>;
+@compute @workgroup_size(1) fn main() { out[0] += 1u; }";
+    let options = GpuOptions { without: wgpu_types::Features::TIMESTAMP_QUERY_INSIDE_PASSES, ..GpuOptions::default() };
+    let engine = &mut Engine::new(Gpu::open(&options).unwrap());
+    let mut plan = new_plan();
+    let (a, b) = (plan.buffer("a", 1), plan.buffer("b", 1));
+    for (name, id) in [("first", a), ("second", b), ("third", a)] {
+        plan.compute(name, ADD, &[("out", storage(id))], Dispatch::Groups([1, 1, 1]));
+    }
+    let mut runner = prepare(engine, plan);
+    let report = run(engine, &mut runner);
+    let with: Vec<_> = report.passes.iter().map(|p| (p.gpu_ms.is_some(), p.timed_with.as_deref())).collect();
+    assert_eq!(with, [(true, None), (false, Some("first")), (false, Some("first"))]);
+    assert!(report.gpu_ms().is_some(), "the shared time counts once, and nothing lacks one");
 }

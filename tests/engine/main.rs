@@ -20,6 +20,8 @@ fn main() -> ExitCode {
         compute::an_overflow_is_clamped_and_told,
         compute::a_count_of_zero_dispatches_nothing,
         compute::more_than_65535_groups_are_folded,
+        compute::dispatches_share_a_pass,
+        compute::shared_passes_have_one_time,
         draw::fullscreen_has_uv_from_the_top_left,
         draw::two_draws_add_into_32_bit_floats,
         draw::minimum_and_masks_hold,

@@ -1,7 +1,7 @@
 //! Damaged files: whatever the bytes, a reader returns, and takes no more memory than they
 //! justify.
 
-use super::writers::{self, Legacy, Mode, Order, Sample, Store, Xml};
+use super::writers::{self, Legacy, Mode, Order, Packing, Rows, Sample, Store, Xml};
 use meniscus::scene::particles::ParticleSet;
 
 /// The numbers of a test: the same in each run.
@@ -31,8 +31,8 @@ fn seeds() -> Vec<(&'static str, Vec<u8>)> {
         seeds.push(("a.vtk", writers::legacy_vtk(&sample, how)));
     }
     for mode in [Mode::Text, Mode::Inline, Mode::AppendedRaw, Mode::AppendedBase64] {
-        for zlib in [false, true] {
-            let how = Xml { mode, zlib, wide: zlib, order: Order::Little, poly: false };
+        for packing in [Packing::None, Packing::Zlib, Packing::Lz4] {
+            let how = Xml { mode, packing, wide: packing != Packing::None, order: Order::Little, poly: false };
             seeds.push(("a.vtu", writers::xml_vtk(&sample, how)));
         }
     }
@@ -48,6 +48,14 @@ fn seeds() -> Vec<(&'static str, Vec<u8>)> {
     seeds.push(("a.xyz", writers::xyz(&sample)));
     seeds.push(("a.xyz", writers::xyz_text(&sample)));
     seeds.push(("a.csv", writers::csv(&sample)));
+    for rows in [Rows::Bare, Rows::Objects, Rows::Columns, Rows::Flat] {
+        seeds.push(("a.json", writers::json(&sample, rows)));
+    }
+    for (wide, order) in [(false, Order::Little), (true, Order::Big)] {
+        seeds.push(("a.pdb", writers::pdb(&sample, wide, order)));
+    }
+    seeds.push(("a.ptc", writers::ptc(&sample, 0)));
+    seeds.push(("a.ptc", writers::gzip(&writers::ptc(&sample, 2))));
     seeds
 }
 
@@ -107,7 +115,7 @@ fn check(name: &str, bytes: &[u8]) {
 
 #[test]
 fn damaged_files_neither_panic_nor_take_memory() {
-    const TIMES: usize = 4000;
+    const TIMES: usize = if cfg!(debug_assertions) { 800 } else { 4000 };
     let before = peak();
     let mut random = Random(7);
     for (name, seed) in seeds() {
@@ -121,6 +129,40 @@ fn damaged_files_neither_panic_nor_take_memory() {
         // Threads of other tests reserve some; a count that is believed takes tens of GiB.
         assert!(after - before < 2 << 30, "the peak rose by {} MiB", (after - before) >> 20);
     }
+}
+
+/// For so many seconds, all formats at once, each on a thread of its own and from numbers of its own:
+/// `MENISCUS_FUZZ_SECONDS=600 cargo test --test formats fuzz -- --nocapture`. Damage heaps up, so that
+/// what is found after hours differs from what is found at once.
+#[test]
+fn fuzz() {
+    let Some(seconds) = std::env::var("MENISCUS_FUZZ_SECONDS").ok().and_then(|s| s.parse::<u64>().ok()) else {
+        eprintln!("skipped: `MENISCUS_FUZZ_SECONDS` does not say how long");
+        return;
+    };
+    let start = std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH).unwrap().as_nanos() as u64;
+    let mut formats: std::collections::BTreeMap<&str, Vec<Vec<u8>>> = std::collections::BTreeMap::new();
+    seeds().into_iter().for_each(|(name, seed)| formats.entry(name).or_default().push(seed));
+    std::thread::scope(|scope| {
+        for (name, seeds) in &formats {
+            scope.spawn(move || {
+                let mut random = Random(start ^ name.len() as u64 ^ u64::from(name.as_bytes()[2]) << 32);
+                let (begin, mut files) = (std::time::Instant::now(), 0_u64);
+                while begin.elapsed().as_secs() < seconds {
+                    let mut bytes = seeds[random.below(seeds.len())].clone();
+                    for _ in 0..random.below(8) {
+                        damage(&mut random, &mut bytes);
+                        let file = std::panic::catch_unwind(|| check(name, &bytes));
+                        assert!(file.is_ok(), "{name}, numbers from {start}: {bytes:?}");
+                        files += 1;
+                    }
+                }
+                eprintln!("{name}: {files} damaged files, none of which did harm");
+            });
+        }
+    });
+    let peak = peak().map_or_else(|| "unknown".into(), |peak| format!("{} MiB", peak >> 20));
+    eprintln!("the most address space that was asked for: {peak}");
 }
 
 #[test]

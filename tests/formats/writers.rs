@@ -33,6 +33,11 @@ impl Sample {
         }
     }
 
+    /// Numbers into the texts `drop` and `bubble`.
+    pub fn kinds(&self) -> Vec<i32> {
+        (0..self.len() as i32).map(|i| i % 2).collect()
+    }
+
     pub fn len(&self) -> usize {
         self.position.len()
     }
@@ -61,7 +66,7 @@ macro_rules! encode {
         }
     )* };
 }
-encode!(f32 f64 i32 u32 i64 u64 u8);
+encode!(u16 f32 f64 i32 u32 i64 u64 u8);
 
 pub fn bytes_of<T: Encode>(numbers: &[T], order: Order) -> Vec<u8> {
     numbers.iter().flat_map(|n| n.bytes(order)).collect()
@@ -162,10 +167,17 @@ pub enum Mode {
     AppendedBase64,
 }
 
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Packing {
+    None,
+    Zlib,
+    Lz4,
+}
+
 #[derive(Clone, Copy, Debug)]
 pub struct Xml {
     pub mode: Mode,
-    pub zlib: bool,
+    pub packing: Packing,
     pub wide: bool,
     pub order: Order,
     pub poly: bool,
@@ -176,7 +188,11 @@ pub fn xml_vtk(sample: &Sample, how: Xml) -> Vec<u8> {
     let kind = if how.poly { "PolyData" } else { "UnstructuredGrid" };
     let order = if how.order == Order::Big { "BigEndian" } else { "LittleEndian" };
     let header = if how.wide { "UInt64" } else { "UInt32" };
-    let compressor = if how.zlib { r#" compressor="vtkZLibDataCompressor""# } else { "" };
+    let compressor = match how.packing {
+        Packing::None => "",
+        Packing::Zlib => r#" compressor="vtkZLibDataCompressor""#,
+        Packing::Lz4 => r#" compressor="vtkLZ4DataCompressor""#,
+    };
     writer.xml = format!(
         "<?xml version=\"1.0\"?>\n<VTKFile type=\"{kind}\" version=\"1.0\" byte_order=\"{order}\" header_type=\"{header}\"{compressor}>\n<{kind}>\n<FieldData>\n"
     );
@@ -240,7 +256,7 @@ impl XmlWriter {
 
     fn base64<T: Encode>(&self, numbers: &[T]) -> String {
         let [header, data] = self.block(numbers);
-        if self.how.zlib {
+        if self.how.packing != Packing::None {
             // A compressed block's header is encoded by itself.
             return STANDARD.encode(header) + &STANDARD.encode(data);
         }
@@ -249,11 +265,13 @@ impl XmlWriter {
 
     fn block<T: Encode>(&self, numbers: &[T]) -> [Vec<u8>; 2] {
         let bytes = bytes_of(numbers, self.how.order);
-        if !self.how.zlib {
-            return [self.word(bytes.len()), bytes];
-        }
+        let pack = match self.how.packing {
+            Packing::None => return [self.word(bytes.len()), bytes],
+            Packing::Zlib => zlib,
+            Packing::Lz4 => lz4_flex::block::compress,
+        };
         const BLOCK: usize = 64;
-        let blocks: Vec<Vec<u8>> = bytes.chunks(BLOCK).map(zlib).collect();
+        let blocks: Vec<Vec<u8>> = bytes.chunks(BLOCK).map(pack).collect();
         let last = bytes.len() % BLOCK;
         let mut header = [self.word(blocks.len()), self.word(BLOCK), self.word(last)].concat();
         for block in &blocks {
@@ -357,7 +375,7 @@ pub fn classic_bgeo(sample: &Sample) -> Vec<u8> {
     for i in 0..sample.len() {
         out.extend(bytes_of(&sample.position[i], Order::Big));
         out.extend(bytes_of(&[1.0_f32], Order::Big));
-        out.extend(bytes_of(&[sample.id[i], i as i32 % 2], Order::Big));
+        out.extend(bytes_of(&[sample.id[i], sample.kinds()[i]], Order::Big));
         out.extend(bytes_of(&sample.velocity[i], Order::Big));
     }
     name(&mut out, "pscale");
@@ -404,7 +422,7 @@ pub fn json_bgeo(sample: &Sample, store: Store, order: Order) -> Vec<u8> {
         json.close();
     });
     json.numeric("v", 3, "fpreal32", |json| json.vectors(&sample.velocity, store));
-    json.strings();
+    json.strings(&sample.kinds());
     json.close();
     json.text("globalattributes");
     json.open();
@@ -545,7 +563,7 @@ impl Json {
     }
 
     /// An attribute of strings, which a reader leaves out.
-    fn strings(&mut self) {
+    fn strings(&mut self, kinds: &[i32]) {
         self.open();
         self.open();
         self.text("type");
@@ -555,9 +573,21 @@ impl Json {
         self.close();
         self.open();
         self.text("strings");
-        self.out.extend([0x40, 0x27, 1, 1, b'a']);
-        self.text("values");
-        self.out.push(0x00);
+        self.open();
+        self.text("drop");
+        self.text("bubble");
+        self.close();
+        self.text("indices");
+        self.open();
+        self.text("size");
+        self.whole(1);
+        self.text("storage");
+        self.text("int32");
+        self.text("arrays");
+        self.open();
+        self.uniform_i32(kinds);
+        self.close();
+        self.close();
         self.close();
         self.close();
     }
@@ -585,4 +615,106 @@ pub fn csv(sample: &Sample) -> Vec<u8> {
         let _ = writeln!(out, "{},{x},{y},{z},{u},{v},{w},{:e},\"drop, {i}\"", sample.id[i], sample.mass[i]);
     }
     out.into_bytes()
+}
+
+// JSON
+
+/// How a JSON file has its particles.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Rows {
+    /// `[[x, y, z], ...]`
+    Bare,
+    Objects,
+    Columns,
+    /// Columns, a vector's numbers one after the other.
+    Flat,
+}
+
+pub fn json(sample: &Sample, rows: Rows) -> Vec<u8> {
+    let list = |v: &[f32]| format!("[{}]", v.iter().map(|x| format!("{x:e}")).collect::<Vec<_>>().join(", "));
+    let all = |v: &[[f32; 3]]| v.iter().map(|v| list(v)).collect::<Vec<_>>().join(",\n");
+    let ids = || sample.id.iter().map(i32::to_string).collect::<Vec<_>>().join(",");
+    let mass = || sample.mass.iter().map(f64::to_string).collect::<Vec<_>>().join(",");
+    let text = match rows {
+        Rows::Bare => format!("[{}]\n", all(&sample.position)),
+        Rows::Objects => {
+            let row = |i: usize| {
+                let ([x, y, z], v) = (sample.position[i], list(&sample.velocity[i]));
+                let (id, mass) = (sample.id[i], sample.mass[i]);
+                format!(
+                    r#" {{"x": {x}, "y": {y}, "z": {z}, "velocity": {v}, "id": {id}, "name": "a \"b\" {i}", "mass": {mass}}}"#
+                )
+            };
+            format!("[\n{}\n]", (0..sample.len()).map(row).collect::<Vec<_>>().join(",\n"))
+        }
+        Rows::Columns => format!(
+            r#"{{"version": 1, "particles": {{"position": [{}], "velocity": [{}], "id": [{}], "mass": [{}]}}, "radius": 0.025}}"#,
+            all(&sample.position),
+            all(&sample.velocity),
+            ids(),
+            mass(),
+        ),
+        Rows::Flat => format!(
+            r#"{{"id": [{}], "velocity": {}, "mass": [{}], "position": {}, "radius": 0.025}}"#,
+            ids(),
+            list(sample.velocity.as_flattened()),
+            mass(),
+            list(sample.position.as_flattened()),
+        ),
+    };
+    text.into_bytes()
+}
+
+// PDB and PTC
+
+pub fn pdb(sample: &Sample, wide: bool, order: Order) -> Vec<u8> {
+    let pointer = || vec![0; if wide { 8 } else { 4 }];
+    let mut out = 670_u32.bytes(order);
+    out.extend(1_u16.bytes(order));
+    out.extend([0; 2]);
+    out.extend(bytes_of(&[1.0_f32, 0.0], order));
+    out.extend(bytes_of(&[sample.len() as u32, 3], order));
+    out.extend([0; 32]);
+    out.extend(pointer());
+    let mut channel = |name: &str, kind: u32, width: u32, data: Vec<u8>| {
+        out.extend([0, 0]);
+        out.extend(1_u16.bytes(order));
+        out.extend([0, 0]);
+        out.extend(pointer());
+        out.extend(bytes_of(&[kind, 0, 0, (sample.len() as u32).wrapping_sub(1)], order));
+        out.extend([0; 4]);
+        // What follows is aligned to the width of a pointer.
+        out.extend(vec![0; if wide { 4 } else { 0 }]);
+        (0..3).for_each(|_| out.extend(pointer()));
+        out.extend(name.as_bytes());
+        out.push(0);
+        out.extend(bytes_of(&[kind, width, sample.len() as u32, 1], order));
+        out.extend(pointer());
+        out.extend(data);
+    };
+    channel("id", 3, 4, bytes_of(&sample.id, order));
+    channel("position", 1, 12, bytes_of(sample.position.as_flattened(), order));
+    channel("velocity", 1, 12, bytes_of(sample.velocity.as_flattened(), order));
+    out
+}
+
+pub fn ptc(sample: &Sample, version: i32) -> Vec<u8> {
+    let order = Order::Little;
+    let mut out = b"pptc".to_vec();
+    out.extend(version.bytes(order));
+    out.extend((sample.len() as f64).bytes(order));
+    out.extend(vec![0; 4 * (6 + [0, 4, 37][version as usize] + 35)]);
+    out.extend(bytes_of(&[2_i32, 4], order));
+    out.extend(b"vector velocity\nfloat mass\n");
+    out.extend(vec![0; if version > 0 { 8 } else { 0 }]);
+    for i in 0..sample.len() {
+        out.extend(bytes_of(&sample.position[i], order));
+        // A normal along x, then none.
+        let angles: [u16; 2] = if i % 2 == 0 { [49151, 32768] } else { [65535; 2] };
+        out.extend(bytes_of(&angles, order));
+        out.extend(0.025_f32.bytes(order));
+        out.extend(bytes_of(&sample.velocity[i], order));
+        out.extend((sample.mass[i] as f32).bytes(order));
+    }
+    out
 }

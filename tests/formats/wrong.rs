@@ -2,7 +2,7 @@
 
 use meniscus::scene::particles::ReadError;
 
-use super::writers::{self, Legacy, Mode, Order, Sample, Store, Xml};
+use super::writers::{self, Legacy, Mode, Order, Packing, Sample, Store, Xml};
 
 #[track_caller]
 fn error(name: &str, bytes: &[u8]) -> ReadError {
@@ -24,9 +24,12 @@ const VTK: &str = "# vtk DataFile Version 4.2\nt\nASCII\nDATASET POLYDATA\n";
 fn the_name_must_tell_the_format() {
     let unknown = error("a.obj", b"x");
     assert_eq!(unknown.message, "`.obj` is not the extension of a particle file");
-    assert_eq!(unknown.hint.unwrap(), "known are .vtk, .vtu, .vtp, .ply, .bgeo, .bgeo.gz, .xyz, .csv");
+    assert_eq!(
+        unknown.hint.unwrap(),
+        "known are .vtk, .vtu, .vtp, .ply, .bgeo, .bgeo.gz, .xyz, .csv, .json, .pdb, .ptc"
+    );
     says("particles", b"x", "a particle file needs an extension that tells its format");
-    for name in ["a.vtk", "a.vtu", "a.vtp", "a.ply", "a.bgeo", "a.bgeo.gz", "a.xyz", "a.csv"] {
+    for name in ["a.vtk", "a.vtu", "a.vtp", "a.ply", "a.bgeo", "a.bgeo.gz", "a.xyz", "a.csv", "a.json"] {
         says(name, b"", "byte 0: the file is empty");
     }
 }
@@ -112,17 +115,17 @@ fn xml_vtk_says_what_is_wrong() {
     let grid = file(">1 2").replace("UnstructuredGrid\" >", "PUnstructuredGrid\" >");
     let message = "line 2, column 1: expected UnstructuredGrid or PolyData, found `PUnstructuredGrid`";
     says("a.vtu", grid, message);
-    let lz4 = vtu("compressor=\"vtkLZ4DataCompressor\"", &array("format=\"binary\">GAAA"));
-    says("a.vtu", &lz4, "the data is compressed by LZ4, which is not read");
-    let hint = error("a.vtu", lz4.as_bytes()).hint.unwrap();
-    assert_eq!(hint, "save the file with zlib compression or with none");
+    let lzma = vtu("compressor=\"vtkLZMADataCompressor\"", &array("format=\"binary\">GAAA"));
+    says("a.vtu", &lzma, "the data is compressed by LZMA, which is not read");
+    let hint = error("a.vtu", lzma.as_bytes()).hint.unwrap();
+    assert_eq!(hint, "save the file with zlib or LZ4 compression or with none");
     let latin = [&file(">1 2").into_bytes()[..60], b"\xe9"].concat();
     says("a.vtu", &latin, "line 3, column 4: expected XML, found `\u{fffd}`");
 }
 
 #[test]
 fn appended_data_must_be_there_once() {
-    let how = Xml { mode: Mode::AppendedRaw, zlib: false, wide: false, order: Order::Little, poly: false };
+    let how = Xml { mode: Mode::AppendedRaw, packing: Packing::None, wide: false, order: Order::Little, poly: false };
     let good = writers::xml_vtk(&Sample::new(4), how);
     let start = good.windows(4).position(|w| w == b"\n  _").unwrap();
     let cut = error("a.vtu", &good[..start + 10]);
@@ -146,7 +149,7 @@ fn appended_data_must_be_there_once() {
 
 #[test]
 fn zlib_blocks_must_hold_what_they_say() {
-    let how = Xml { mode: Mode::AppendedRaw, zlib: true, wide: true, order: Order::Little, poly: false };
+    let how = Xml { mode: Mode::AppendedRaw, packing: Packing::Zlib, wide: true, order: Order::Little, poly: false };
     let good = writers::xml_vtk(&Sample::new(4), how);
     let start = good.windows(3).position(|w| w == b"  _").unwrap() + 3;
     // The first array is the radius: one block, then the size of all and of the last.
@@ -277,7 +280,38 @@ fn xyz_and_csv_say_what_is_wrong() {
     assert!(no_position.hint.unwrap().starts_with("`x`, `y`, `z` or"));
     says("a.csv", "1,2,3,4\n", "line 1, column 1: expected a header line with names, found 4 numbers");
     says("a.csv", "# nothing\n\n", "expected a header line, found the end of the file");
-    says("a.csv", "x,y,z\none,2,3\n", "line 1, column 1: no columns for the position: the header has `x`, `y`, `z`");
+    says("a.csv", "x,y,z\none,2,3\n", "line 2, column 1: column `x`: expected a number, found `one`");
+    says("a.csv", "a,x,y,z\nb,1,2,3\nc,1,2,N/A\n", "line 3, column 7: column `z`: expected a number, found `N/A`");
+    let late = super::parse("a.csv", b"x,y,z,a\n1,2,3,4\n1,2,3,four\n").unwrap();
+    assert_eq!(late.notes, ["column `a` is left out: it holds text"]);
+}
+
+#[test]
+fn json_pdb_and_ptc_say_what_is_wrong() {
+    says(
+        "a.json",
+        "[[1, 2, 3], [4, 5]]",
+        "line 1, column 13: row 2: `position` has 2 numbers, and 3 in the rows before",
+    );
+    let rows = r#"[{"x": 1, "y": 2, "z": 3}, {"x": 1, "y": 2}]"#;
+    says("a.json", rows, "line 1, column 28: row 2: `z` has 0 numbers, and 1 in the rows before");
+    says("a.json", "[[1, 2, three]]", "line 1, column 9: expected a number, found `three`");
+    says("a.json", "[[1, 2, 3]", "line 1, column 11: expected `]`, found the end of the file");
+    says("a.json", "[[1 2 3]]", "line 1, column 5: expected `,` or `]`, found `2`");
+    says("a.json", "{\"a\": [1, 2]}", "line 1, column 1: no position: there is `a`");
+    says("a.json", "{x: 1}", "line 1, column 2: expected a name in quotes");
+    says("a.json", "[[1,2,3]] 4", "line 1, column 11: expected the end of the file, found `4`");
+    says("a.json", "[".repeat(100_000), "line 1, column 18: more than 16 lists and objects in one another");
+    says("a.pdb", "x", "byte 0: expected the number 670, which begins a PDB file, found `x`");
+    let bytes = writers::pdb(&Sample::new(9), false, Order::Little);
+    let cut = "byte 232: channel `position`: expected 108 bytes, found 8 before the end of the file";
+    says("a.pdb", &bytes[..240], cut);
+    says("a.ptc", "pptx", "byte 0: expected `pptc`, found `pptx`");
+    let mut bytes = writers::ptc(&Sample::new(9), 0);
+    bytes[8..16].copy_from_slice(&f64::NAN.to_le_bytes());
+    says("a.ptc", &bytes, "byte 8: expected the number of points, found NaN");
+    bytes[8..16].copy_from_slice(&4.0e9_f64.to_le_bytes());
+    assert!(error("a.ptc", &bytes).message.contains("144000000000 bytes"), "{}", error("a.ptc", &bytes));
 }
 
 #[test]

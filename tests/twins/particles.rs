@@ -33,7 +33,7 @@ fn file(name: &str) -> Option<Vec<[f32; 3]>> {
         return None;
     };
     let read = particles::read(&path, &bytes).unwrap_or_else(|e| panic!("{name}: {e:?}"));
-    Some(read.positions())
+    Some(read.positions().into_owned())
 }
 
 /// Every cell holds exactly the particles that lie in it, in the order of the file.

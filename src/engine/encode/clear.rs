@@ -36,13 +36,11 @@ pub(super) fn encode(
         }
         ClearVariant::Words { group, groups } => {
             let Some(pipeline) = compute_pipeline(pipeline) else { return };
-            let mut compute = encoding.encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
-                label: Some(&pass.path),
-                timestamp_writes: encoding.timing.compute(encoding.pair, true, true),
+            encoding.dispatches(pass, (true, true), |compute| {
+                compute.set_pipeline(pipeline);
+                compute.set_bind_group(0, group, &[]);
+                compute.dispatch_workgroups(groups[0], groups[1], 1);
             });
-            compute.set_pipeline(pipeline);
-            compute.set_bind_group(0, group, &[]);
-            compute.dispatch_workgroups(groups[0], groups[1], 1);
         }
     }
 }
@@ -55,7 +53,7 @@ fn color(
     (first, last): (bool, bool),
 ) {
     let ops = wgt::Operations { load: wgt::LoadOp::Clear(value), store: wgt::StoreOp::Store };
-    encoding.encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+    encoding.recorder.render(&wgpu::RenderPassDescriptor {
         label: Some(&pass.path),
         color_attachments: &[Some(wgpu::RenderPassColorAttachment {
             view,
@@ -76,7 +74,7 @@ fn depth(
     (first, last): (bool, bool),
 ) {
     let store = wgt::StoreOp::Store;
-    encoding.encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+    encoding.recorder.render(&wgpu::RenderPassDescriptor {
         label: Some(&pass.path),
         depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
             view,

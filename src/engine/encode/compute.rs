@@ -12,19 +12,16 @@ pub(super) fn encode(
     group: Option<&wgpu::BindGroup>,
 ) {
     let Some(pipeline) = compute_pipeline(pipeline) else { return };
-    let mut compute = encoding.encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
-        label: Some(&pass.path),
-        timestamp_writes: encoding.timing.compute(encoding.pair, true, true),
-    });
-    compute.set_pipeline(pipeline);
-    if group.is_some() {
-        compute.set_bind_group(0, group, &[]);
-    }
-    match dispatch {
-        Dispatch::Groups([x, y, z]) if ![x, y, z].contains(&&0) => compute.dispatch_workgroups(*x, *y, *z),
-        Dispatch::Groups(_) => {}
-        Dispatch::Indirect { slot } => {
-            compute.dispatch_workgroups_indirect(&encoding.fixed.arguments, u64::from(*slot) * 32);
+    let arguments = &encoding.fixed.arguments;
+    encoding.dispatches(pass, (true, true), |compute| {
+        compute.set_pipeline(pipeline);
+        if group.is_some() {
+            compute.set_bind_group(0, group, &[]);
         }
-    }
+        match dispatch {
+            Dispatch::Groups([x, y, z]) if ![x, y, z].contains(&&0) => compute.dispatch_workgroups(*x, *y, *z),
+            Dispatch::Groups(_) => {}
+            Dispatch::Indirect { slot } => compute.dispatch_workgroups_indirect(arguments, u64::from(*slot) * 32),
+        }
+    });
 }

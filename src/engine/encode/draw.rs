@@ -9,6 +9,7 @@ use crate::engine::pipeline::Pipeline;
 use crate::plan::model::{ColorTarget, DepthTarget, Draw, Geometry, Pass};
 
 /// A draw of a render pass.
+#[derive(Clone, Copy)]
 pub(in crate::engine) struct Part<'a> {
     pub pass: &'a Pass,
     pub draw: &'a Draw,
@@ -16,36 +17,30 @@ pub(in crate::engine) struct Part<'a> {
     pub variant: &'a DrawVariant,
 }
 
+/// As many as wgpu allows.
+const MOST_TARGETS: usize = 8;
+
 /// Encodes draws that share their targets as one render pass: it loads as the first says, and
 /// resolves and stores for all.
-pub(in crate::engine) fn encode(encoding: &mut Encoding<'_>, parts: &[Part<'_>]) {
-    let (Some(first), Some(last)) = (parts.first(), parts.last()) else { return };
-    let free = encoding.loads_are_free;
-    let colors: Vec<_> = first
-        .draw
-        .color
-        .iter()
-        .zip(first.variant.color.iter().zip(&last.variant.color))
-        .map(|(target, ((view, _), (_, resolve)))| {
-            Some(wgpu::RenderPassColorAttachment {
-                view,
-                depth_slice: None,
-                resolve_target: resolve.as_ref(),
-                ops: wgt::Operations { load: load(target, free), store: wgt::StoreOp::Store },
-            })
-        })
-        .collect();
+pub(in crate::engine) fn encode<'a>(encoding: &mut Encoding<'_>, parts: impl Iterator<Item = Part<'a>> + Clone) {
+    let (Some(first), Some(last)) = (parts.clone().next(), parts.clone().last()) else { return };
+    let count = parts.clone().count();
+    let (timing, pair, named) = (encoding.timing, encoding.pair, encoding.recorder.named && count > 1);
+    let mut colors = [const { None }; MOST_TARGETS];
+    let targets = attachments(&first, &last, encoding.loads_are_free);
+    let filled = colors.iter_mut().zip(targets).map(|(place, color)| *place = Some(color)).count();
     let depth = first.draw.depth.as_ref().zip(first.variant.depth.as_ref());
-    let mut render = encoding.encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+    let mut render = encoding.recorder.render(&wgpu::RenderPassDescriptor {
         label: Some(&first.pass.path),
-        color_attachments: &colors,
-        depth_stencil_attachment: depth.map(|(target, view)| depth_attachment(target, view, parts)),
-        timestamp_writes: encoding.timing.render(encoding.pair, true, true),
+        color_attachments: &colors[..filled],
+        depth_stencil_attachment: depth.map(|(target, view)| depth_attachment(target, view, parts.clone())),
+        timestamp_writes: timing.render_of(pair, count),
         ..wgpu::RenderPassDescriptor::default()
     });
     let mut in_region = false;
-    for part in parts {
-        if parts.len() > 1 {
+    for (nth, part) in parts.enumerate() {
+        timing.write_between_draws(&mut render, pair, nth);
+        if named {
             render.push_debug_group(&part.pass.path);
         }
         if part.draw.region.is_some() || in_region {
@@ -53,12 +48,26 @@ pub(in crate::engine) fn encode(encoding: &mut Encoding<'_>, parts: &[Part<'_>])
             region(&mut render, part.draw);
         }
         if !matches!(part.draw.region, Some([_, _, 0, _] | [_, _, _, 0])) {
-            draw(&mut render, part, &encoding.fixed.arguments);
+            draw(&mut render, &part, &encoding.fixed.arguments);
         }
-        if parts.len() > 1 {
+        if named {
             render.pop_debug_group();
         }
     }
+}
+
+fn attachments<'a>(
+    first: &Part<'a>,
+    last: &Part<'a>,
+    loads_are_free: bool,
+) -> impl Iterator<Item = wgpu::RenderPassColorAttachment<'a>> {
+    let views = first.variant.color.iter().zip(&last.variant.color);
+    first.draw.color.iter().zip(views).map(move |(target, ((view, _), (_, resolve)))| wgpu::RenderPassColorAttachment {
+        view,
+        depth_slice: None,
+        resolve_target: resolve.as_ref(),
+        ops: wgt::Operations { load: load(target, loads_are_free), store: wgt::StoreOp::Store },
+    })
 }
 
 fn region(render: &mut wgpu::RenderPass<'_>, draw: &Draw) {
@@ -116,10 +125,10 @@ fn load(target: &ColorTarget, loads_are_free: bool) -> wgt::LoadOp<wgt::Color> {
 fn depth_attachment<'a>(
     target: &DepthTarget,
     view: &'a wgpu::TextureView,
-    parts: &[Part<'_>],
+    parts: impl Iterator<Item = Part<'a>> + Clone,
 ) -> wgpu::RenderPassDepthStencilAttachment<'a> {
     let store = wgt::StoreOp::Store;
-    let all = || parts.iter().filter_map(|p| p.draw.depth.as_ref());
+    let all = || parts.clone().filter_map(|p| p.draw.depth.as_ref());
     let depth = target.format.has_depth_aspect() && all().any(|d| d.write || d.clear.is_some());
     let stencil = target.format.has_stencil_aspect()
         && all().filter_map(|d| d.stencil.as_ref()).any(|s| s.write_mask != 0 || s.clear.is_some());

@@ -15,7 +15,7 @@ pub(super) fn encode(encoding: &mut Encoding<'_>, pass: &Pass, pipeline: Option<
                 let Some(pipeline) = render_pipeline(pipeline) else { return };
                 // Every texel is written, what was there does not matter.
                 let ops = wgt::Operations { load: wgt::LoadOp::Load, store: wgt::StoreOp::Store };
-                let mut render = encoding.encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+                let mut render = encoding.recorder.render(&wgpu::RenderPassDescriptor {
                     label: Some(&pass.path),
                     color_attachments: &[Some(wgpu::RenderPassColorAttachment {
                         view,
@@ -32,13 +32,11 @@ pub(super) fn encode(encoding: &mut Encoding<'_>, pass: &Pass, pipeline: Option<
             }
             MipInto::Groups([x, y, z]) => {
                 let Some(pipeline) = compute_pipeline(pipeline) else { return };
-                let mut compute = encoding.encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
-                    label: Some(&pass.path),
-                    timestamp_writes: encoding.timing.compute(encoding.pair, first, last),
+                encoding.dispatches(pass, (first, last), |compute| {
+                    compute.set_pipeline(pipeline);
+                    compute.set_bind_group(0, &step.group, &[]);
+                    compute.dispatch_workgroups(*x, *y, *z);
                 });
-                compute.set_pipeline(pipeline);
-                compute.set_bind_group(0, &step.group, &[]);
-                compute.dispatch_workgroups(*x, *y, *z);
             }
         }
     }

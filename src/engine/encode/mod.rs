@@ -5,11 +5,16 @@ mod clear;
 mod compute;
 mod copy;
 pub(super) mod draw;
+mod group;
 mod mips;
+mod recorder;
 mod settle;
+
+pub(super) use recorder::{Begun, Recorder};
 
 use super::bind::{Fixed, Variant, resolve};
 use super::clear::ClearVariant;
+use super::mips::MipInto;
 use super::pipeline::{Pipeline, PipelineKind};
 use super::pool::Pool;
 use super::timing::Timing;
@@ -17,7 +22,7 @@ use crate::plan::model::{ObjectId, ObjectRef, Pass, PassKind, Plan};
 
 /// A frame on its way into commands.
 pub(super) struct Encoding<'a> {
-    pub encoder: &'a mut wgpu::CommandEncoder,
+    pub recorder: &'a mut Recorder,
     pub plan: &'a Plan,
     pub pool: &'a Pool,
     pub fixed: &'a Fixed,
@@ -37,7 +42,7 @@ impl Encoding<'_> {
                 compute::encode(self, pass, dispatch, pipeline, group.as_ref());
             }
             (PassKind::Draw(draw), Variant::Draw(variant)) => {
-                draw::encode(self, &[draw::Part { pass, draw, pipeline, variant }]);
+                draw::encode(self, std::iter::once(draw::Part { pass, draw, pipeline, variant }));
             }
             (PassKind::Clear { view, .. }, Variant::Clear(variant)) => {
                 clear::encode(self, pass, view, pipeline, variant);
@@ -59,11 +64,40 @@ impl Encoding<'_> {
 
     /// Encodes what is no pass, in a debug group of the pass's name.
     fn between(&mut self, pass: &Pass, commands: impl FnOnce(&mut wgpu::CommandEncoder)) {
-        self.encoder.push_debug_group(&pass.path);
-        self.timing.write(self.encoder, self.pair, 0);
-        commands(self.encoder);
-        self.timing.write(self.encoder, self.pair, 1);
-        self.encoder.pop_debug_group();
+        let (timing, pair, named) = (self.timing, self.pair, self.recorder.named);
+        let encoder = self.recorder.encoder();
+        if named {
+            encoder.push_debug_group(&pass.path);
+        }
+        timing.write(encoder, pair, 0);
+        commands(encoder);
+        timing.write(encoder, pair, 1);
+        if named {
+            encoder.pop_debug_group();
+        }
+    }
+
+    /// Encodes dispatches, in the compute pass that is open or in a new one. `first` and `last`
+    /// say whether the pass's time begins and ends with them.
+    fn dispatches(
+        &mut self,
+        pass: &Pass,
+        (first, last): (bool, bool),
+        commands: impl FnOnce(&mut wgpu::ComputePass<'static>),
+    ) {
+        let (timing, pair, named) = (self.timing, self.pair, self.recorder.named);
+        let compute = self
+            .recorder
+            .compute(&wgpu::ComputePassDescriptor { label: Some(&pass.path), timestamp_writes: timing.compute(pair) });
+        if named {
+            compute.push_debug_group(&pass.path);
+        }
+        timing.write_in_compute(compute, pair.filter(|_| first), 0);
+        commands(compute);
+        timing.write_in_compute(compute, pair.filter(|_| last), 1);
+        if named {
+            compute.pop_debug_group();
+        }
     }
 }
 
@@ -76,6 +110,15 @@ pub(super) fn can_be_timed(variant: &Variant, between: bool) -> bool {
         Variant::Mips(steps) => !steps.is_empty(),
         Variant::Compute(_) | Variant::Draw(_) | Variant::Settle(_) => true,
         Variant::Clear(ClearVariant::Words { .. }) => true,
+    }
+}
+
+/// Whether a pass is nothing but dispatches, which join those before them.
+pub(super) fn is_dispatch(variant: &Variant) -> bool {
+    match variant {
+        Variant::Compute(_) | Variant::Settle(_) | Variant::Clear(ClearVariant::Words { .. }) => true,
+        Variant::Mips(steps) => matches!(steps.first().map(|step| &step.into), Some(MipInto::Groups(_))),
+        _ => false,
     }
 }
 

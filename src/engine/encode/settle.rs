@@ -6,11 +6,9 @@ use crate::plan::model::Pass;
 
 pub(super) fn encode(encoding: &mut Encoding<'_>, pass: &Pass, pipeline: Option<&Pipeline>, group: &wgpu::BindGroup) {
     let Some(pipeline) = compute_pipeline(pipeline) else { return };
-    let mut compute = encoding.encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
-        label: Some(&pass.path),
-        timestamp_writes: encoding.timing.compute(encoding.pair, true, true),
+    encoding.dispatches(pass, (true, true), |compute| {
+        compute.set_pipeline(pipeline);
+        compute.set_bind_group(0, group, &[]);
+        compute.dispatch_workgroups(1, 1, 1);
     });
-    compute.set_pipeline(pipeline);
-    compute.set_bind_group(0, group, &[]);
-    compute.dispatch_workgroups(1, 1, 1);
 }

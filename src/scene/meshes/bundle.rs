@@ -2,6 +2,7 @@
 //! can happen on another thread and the same bytes need not be read twice.
 
 use std::collections::BTreeMap;
+use std::fmt;
 use std::io;
 use std::path::{Component, Path, PathBuf};
 use std::sync::Arc;
@@ -32,6 +33,28 @@ pub(super) enum Refused {
     Outside,
     /// An address of a network.
     Remote,
+}
+
+impl Refused {
+    /// How to mend it.
+    pub fn hint(&self) -> &'static str {
+        match self {
+            Self::Missing => "keep the files of a model together",
+            Self::Unreadable(_) => "see whether the file may be read",
+            Self::Outside | Self::Remote => "copy it into the folder of the model",
+        }
+    }
+}
+
+impl fmt::Display for Refused {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Missing => f.write_str("is not there"),
+            Self::Unreadable(why) => write!(f, "cannot be read: {why}"),
+            Self::Outside => f.write_str("lies outside of the model's folder, and is not read"),
+            Self::Remote => f.write_str("is an address elsewhere, and is not read"),
+        }
+    }
 }
 
 impl Bundle {
@@ -72,6 +95,11 @@ impl Bundle {
             }
         };
         self.others.insert(name.to_owned(), found);
+    }
+
+    /// What a reference led to.
+    pub(super) fn other(&self, name: &str) -> Result<&[u8], &Refused> {
+        self.others.get(name).map_or(Err(&Refused::Missing), |found| found.as_deref())
     }
 
     /// Bytes of all files together.

@@ -7,15 +7,19 @@
 //! model asks no questions. A reader never trusts a file: memory is bounded by what its bytes can
 //! justify, and what is wrong is a diagnostic that names the file and the place.
 
-#[allow(dead_code, reason = "its readers come next")]
 mod bundle;
+mod fill;
+mod gltf;
 mod model;
+mod pictures;
 mod pose;
+mod report;
+mod tangents;
 
 use std::path::Path;
 use std::sync::Arc;
 
-use crate::diagnostic::{Code, Diagnostic, Diagnostics};
+use crate::diagnostic::Diagnostics;
 use crate::files::Files;
 
 pub use bundle::Bundle;
@@ -24,18 +28,32 @@ pub use model::{
     Material, Mesh, Model, Node, Primitive, Sampler, TextureUse, UvTransform, Wrap,
 };
 pub use pose::is_mirrored;
+use report::Report;
+
+type Gatherer = fn(&mut Bundle, &dyn Files);
+type Reader = fn(&Bundle, &mut Report) -> Option<Model>;
+
+/// Ends of file names, who finds the files that such a file names, and who reads them.
+const READERS: &[(&str, Gatherer, Reader)] = &[("gltf", gltf::gather, gltf::read), ("glb", gltf::gather, gltf::read)];
+
+fn reader_for(path: &Path) -> Option<(Gatherer, Reader)> {
+    let end = path.extension()?.to_str()?;
+    READERS.iter().find(|(known, ..)| end.eq_ignore_ascii_case(known)).map(|(_, gather, read)| (*gather, *read))
+}
 
 /// Whether [`read()`] knows files of this name.
 pub fn known_extension(path: &Path) -> bool {
-    let known = ["gltf", "glb", "obj", "ply", "vtk"];
-    path.extension().is_some_and(|end| known.iter().any(|k| end.eq_ignore_ascii_case(k)))
+    reader_for(path).is_some()
 }
 
 /// Collects the files that a mesh file names. What is missing is told by [`read()`], which knows
 /// whether it matters.
 pub fn gather(files: &dyn Files, path: &Path, bytes: Arc<[u8]>) -> Bundle {
-    let _ = files;
-    Bundle::alone(path, bytes)
+    let mut bundle = Bundle::alone(path, bytes);
+    if let Some((gather, _)) = reader_for(path) {
+        gather(&mut bundle, files);
+    }
+    bundle
 }
 
 /// Reads a mesh file.
@@ -43,5 +61,26 @@ pub fn gather(files: &dyn Files, path: &Path, bytes: Arc<[u8]>) -> Bundle {
 /// # Errors
 /// If the extension is unknown, or the bytes are not what they claim to be: all findings.
 pub fn read(bundle: &Bundle) -> Result<Model, Diagnostics> {
-    Err(Diagnostic::error(Code::ASSET, format!("`{}`: no reader yet", bundle.path.display())).into())
+    let mut report = Report::new(&bundle.path, bundle.size());
+    let Some((_, reader)) = reader_for(&bundle.path) else {
+        let known: Vec<String> = READERS.iter().map(|(end, ..)| format!(".{end}")).collect();
+        let hint = format!("known are {}", known.join(", "));
+        report.error_with_hint("", "its extension is not that of a mesh file", &hint);
+        return Err(report.finish());
+    };
+    if bundle.bytes.is_empty() {
+        report.error("", "the file is empty");
+        return Err(report.finish());
+    }
+    let model = reader(bundle, &mut report);
+    match model.filter(|_| !report.has_errors()) {
+        Some(mut model) => {
+            if model.triangle_count() == 0 {
+                report.warn("", "the file draws no triangles");
+            }
+            model.diagnostics = report.finish();
+            Ok(model)
+        }
+        None => Err(report.finish()),
+    }
 }

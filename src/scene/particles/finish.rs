@@ -1,8 +1,10 @@
 //! From what a reader found to a set: rows that are not finite go, bounds and radius are taken.
 
+use std::borrow::Cow;
 use std::collections::HashSet;
 
 use super::error::{ReadError, counted};
+use super::parallel;
 use super::values::Values;
 use super::{Attribute, ParticleSet};
 
@@ -32,16 +34,16 @@ pub(super) fn finish(found: Found) -> Result<ParticleSet, ReadError> {
     attributes.insert(0, Attribute { name: "position".to_owned(), components: 3, values: position });
     let radius = radius_of(&globals, &attributes, &mut notes);
 
-    let mut xyz = triples(&attributes[0].values);
-    let dropped = drop_rows(&mut xyz, &mut attributes);
+    let dropped = drop_rows(&mut attributes, rows);
     if dropped > 0 {
         notes.push(format!("dropped {dropped} of {} whose position is not finite", counted(rows, "particle")));
     }
-    if xyz.is_empty() {
+    let count = rows - dropped;
+    if count == 0 {
         notes.push(if rows == 0 { "the file has no particles".to_owned() } else { "no particles are left".to_owned() });
     }
-    let (min, max) = bounds(&xyz);
-    Ok(ParticleSet { attributes, count: xyz.len(), dropped, radius, min, max, notes })
+    let (min, max) = bounds(&triples(&attributes[0].values));
+    Ok(ParticleSet { attributes, count, dropped, radius, min, max, notes })
 }
 
 /// Positions of whole numbers become `f64`, which holds them all.
@@ -98,34 +100,36 @@ pub(super) fn names_radius(name: &str) -> bool {
     NAMES.iter().any(|n| plain.eq_ignore_ascii_case(n))
 }
 
-pub(super) fn triples(values: &Values) -> Vec<[f32; 3]> {
+/// The positions as `f32`, without a copy where they are.
+pub(super) fn triples(values: &Values) -> Cow<'_, [[f32; 3]]> {
     match values {
-        Values::F32(v) => v.as_chunks().0.to_vec(),
-        other => other.to_f32().as_chunks().0.to_vec(),
+        Values::F32(v) => Cow::Borrowed(v.as_chunks().0),
+        other => Cow::Owned(other.to_f32().as_chunks().0.to_vec()),
     }
 }
 
 /// Removes rows whose position is not finite as `f32` from everything; tells how many.
-fn drop_rows(xyz: &mut Vec<[f32; 3]>, attributes: &mut [Attribute]) -> usize {
-    let finite = |p: &[f32; 3]| p.iter().all(|v| v.is_finite());
-    if xyz.iter().all(finite) {
-        return 0;
-    }
-    let keep: Vec<bool> = xyz.iter().map(finite).collect();
+fn drop_rows(attributes: &mut [Attribute], rows: usize) -> usize {
+    let keep = {
+        let xyz = triples(&attributes[0].values);
+        let finite = |p: &[f32; 3]| p.iter().all(|v| v.is_finite());
+        if parallel::looked_at(&xyz, 3, |part| part.iter().all(finite)).into_iter().all(|all| all) {
+            return 0;
+        }
+        xyz.iter().map(finite).collect::<Vec<bool>>()
+    };
     for attribute in attributes {
         attribute.values.retain_rows(&keep, attribute.components);
     }
-    xyz.retain(finite);
-    keep.len() - xyz.len()
+    rows - keep.iter().filter(|keep| **keep).count()
 }
 
 fn bounds(xyz: &[[f32; 3]]) -> ([f32; 3], [f32; 3]) {
     let Some(&first) = xyz.first() else { return ([0.0; 3], [0.0; 3]) };
-    xyz.iter().fold((first, first), |(mut min, mut max), p| {
-        for axis in 0..3 {
-            min[axis] = min[axis].min(p[axis]);
-            max[axis] = max[axis].max(p[axis]);
-        }
-        (min, max)
-    })
+    let wider = |a: ([f32; 3], [f32; 3]), b: ([f32; 3], [f32; 3])| {
+        let low: [f32; 3] = std::array::from_fn(|axis| a.0[axis].min(b.0[axis]));
+        (low, std::array::from_fn(|axis| a.1[axis].max(b.1[axis])))
+    };
+    let parts = parallel::looked_at(xyz, 3, |part| part.iter().fold((first, first), |all, p| wider(all, (*p, *p))));
+    parts.into_iter().fold((first, first), wider)
 }

@@ -91,6 +91,11 @@ fn base_of<'a>(name: &'a str, before: &str, component: &str, after: &str) -> Opt
     (last.eq_ignore_ascii_case(component) && !base.is_empty()).then_some(base)
 }
 
+/// Whether an attribute of this name is the position.
+pub(super) fn means_position(name: &str) -> bool {
+    POSITION.iter().any(|known| name.eq_ignore_ascii_case(known))
+}
+
 fn name_position(groups: &mut [Group]) {
     if groups.iter().any(|g| g.name == "position" && g.columns.len() == 3) {
         return;

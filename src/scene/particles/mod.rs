@@ -1,4 +1,4 @@
-//! Particle files: legacy and XML VTK, PLY, BGEO, XYZ and CSV.
+//! Particle files: legacy and XML VTK, PLY, BGEO, XYZ, CSV, JSON, PDB and PTC.
 //!
 //! [`read`] turns the bytes of a file into a [`ParticleSet`]: named columns in the width that the
 //! file has, of which `position` is always the first. A loader never trusts a header: each count
@@ -13,14 +13,20 @@ mod cursor;
 mod error;
 mod finish;
 mod group;
+mod json;
 mod legacy_vtk;
+mod parallel;
+mod pdb;
 mod ply;
+mod ptc;
 mod radius;
+mod stream;
 mod table;
 mod values;
 mod xml_vtk;
 mod xyz;
 
+use std::borrow::Cow;
 use std::path::Path;
 
 pub use error::{Place, ReadError};
@@ -80,7 +86,7 @@ impl ParticleSet {
     }
 
     /// The positions in metres, as `f32`.
-    pub fn positions(&self) -> Vec<[f32; 3]> {
+    pub fn positions(&self) -> Cow<'_, [[f32; 3]]> {
         self.attributes.first().map(|a| finish::triples(&a.values)).unwrap_or_default()
     }
 }
@@ -97,12 +103,20 @@ const READERS: &[(&str, Reader)] = &[
     ("bgeo.gz", bgeo::read),
     ("xyz", xyz::read),
     ("csv", table::read),
+    ("json", json::read),
+    ("pdb", pdb::read),
+    ("ptc", ptc::read),
 ];
 
 fn reader_for(path: &Path) -> Option<Reader> {
     let name = path.file_name()?.to_string_lossy().to_ascii_lowercase();
     let ends = |end: &str| name.strip_suffix(end).is_some_and(|stem| stem.ends_with('.'));
     READERS.iter().find(|(end, _)| ends(end)).map(|(_, reader)| *reader)
+}
+
+/// The ends of the names of particle files, each with its dot.
+pub fn extensions() -> impl Iterator<Item = String> {
+    READERS.iter().map(|(end, _)| format!(".{end}"))
 }
 
 /// Whether [`read`] knows files of this name.
@@ -118,7 +132,7 @@ pub fn known_extension(path: &Path) -> bool {
 /// If the extension is unknown, or the bytes are not what they claim to be.
 pub fn read(path: &Path, bytes: &[u8]) -> Result<ParticleSet, ReadError> {
     let Some(reader) = reader_for(path) else {
-        let known: Vec<String> = READERS.iter().map(|(end, _)| format!(".{end}")).collect();
+        let known: Vec<String> = extensions().collect();
         let message = match path.extension() {
             Some(end) => format!("`.{}` is not the extension of a particle file", end.to_string_lossy()),
             None => "a particle file needs an extension that tells its format".to_owned(),

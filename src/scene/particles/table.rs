@@ -25,6 +25,8 @@ pub(super) fn read(bytes: &[u8]) -> Result<Found, ReadError> {
     let mut notes = Vec::new();
     let (names, separator) = lines.header(&mut notes)?;
     let mut columns: Vec<Column> = names.iter().map(|_| Column::Unseen).collect();
+    // Where each column that is none of numbers has its first text.
+    let mut texts = Vec::new();
     while let Some((start, line)) = lines.next() {
         let cells = split(line, separator);
         if cells.len() != names.len() {
@@ -32,13 +34,19 @@ pub(super) fn read(bytes: &[u8]) -> Result<Found, ReadError> {
             return Err(ReadError::new(message).at(Place::in_text(bytes, start)));
         }
         for ((cell, column), name) in cells.iter().zip(&mut columns).zip(&names) {
-            column.push(&cell.text).map_err(|()| {
-                let message = format!("column `{name}`: expected a number, found {}", shown(&cell.text));
-                ReadError::new(message).at(Place::in_text(bytes, start + cell.at))
-            })?;
+            if !column.is_text() && column.push(&cell.text).is_err() {
+                texts.push((name.clone(), start + cell.at, shown(&cell.text)));
+            }
         }
     }
-    assemble(&names, columns, notes)
+    assemble(&names, columns, notes, |name| {
+        let (_, at, found) = texts.iter().find(|(known, ..)| known == name)?;
+        Some(not_a_number(name, found, Place::in_text(bytes, *at)))
+    })
+}
+
+fn not_a_number(name: &str, found: &str, place: Place) -> ReadError {
+    ReadError::new(format!("column `{name}`: expected a number, found {found}")).at(place)
 }
 
 struct Lines<'a> {
@@ -135,11 +143,11 @@ fn quoted(rest: &[u8], separator: u8, before: usize) -> (usize, Cow<'_, [u8]>) {
     (before + at + to_separator, Cow::Owned(text))
 }
 
-enum Column {
+pub(super) enum Column {
     Unseen,
     Whole(Vec<i128>),
     Float(Vec<f64>),
-    /// The first cell was no number: the column is left out.
+    /// A cell was no number: the column is left out.
     Text,
 }
 
@@ -165,12 +173,20 @@ fn number(cell: &[u8]) -> Option<Cipher> {
 }
 
 impl Column {
-    fn push(&mut self, cell: &[u8]) -> Result<(), ()> {
+    pub fn is_text(&self) -> bool {
+        matches!(self, Self::Text)
+    }
+
+    /// # Errors
+    /// If the cell is no number; the column is one of texts from then on.
+    pub fn push(&mut self, cell: &[u8]) -> Result<(), ()> {
         let found = number(cell);
         match (&mut *self, found) {
             (Self::Text, _) => {}
-            (Self::Unseen, None) => *self = Self::Text,
-            (_, None) => return Err(()),
+            (_, None) => {
+                *self = Self::Text;
+                return Err(());
+            }
             (Self::Unseen, Some(Cipher::Whole(whole))) => *self = Self::Whole(vec![whole]),
             (Self::Unseen, Some(Cipher::Float(float))) => *self = Self::Float(vec![float]),
             (Self::Whole(all), Some(Cipher::Whole(whole))) => all.push(whole),
@@ -184,7 +200,7 @@ impl Column {
         Ok(())
     }
 
-    fn values(self) -> Option<Values> {
+    pub fn values(self) -> Option<Values> {
         match self {
             Self::Unseen => Some(Values::F64(Vec::new())),
             Self::Text => None,
@@ -202,7 +218,19 @@ fn narrowed<T: TryFrom<i128>>(all: &[i128], wrap: fn(Vec<T>) -> Values) -> Optio
     all.iter().map(|&whole| T::try_from(whole).ok()).collect::<Option<Vec<T>>>().map(wrap)
 }
 
-fn assemble(names: &[String], columns: Vec<Column>, mut notes: Vec<String>) -> Result<Found, ReadError> {
+/// The columns as attributes; `text` tells where a column that is none of numbers has a text.
+fn assemble(
+    names: &[String],
+    columns: Vec<Column>,
+    mut notes: Vec<String>,
+    text: impl Fn(&str) -> Option<ReadError>,
+) -> Result<Found, ReadError> {
+    // The position must be numbers: what is wrong with it is told where it is.
+    let position = group(names).into_iter().find(|g| g.name == "position" && g.columns.len() == 3);
+    let wrong = position.and_then(|g| g.columns.iter().find(|&&c| columns[c].is_text()).and_then(|&c| text(&names[c])));
+    if let Some(wrong) = wrong {
+        return Err(wrong);
+    }
     let mut kept = Vec::new();
     let mut kept_names = Vec::new();
     for (name, column) in names.iter().zip(columns) {

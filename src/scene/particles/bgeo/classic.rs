@@ -2,21 +2,24 @@
 //!
 //! A header counts points, primitives and attributes; the point attributes' names and types
 //! follow, then a row for each point: `x`, `y`, `z`, `w` and its attributes, 4 bytes a number.
-//! Detail attributes (values for the whole file) come last, and are read only if no primitives
-//! are in between.
+//! Texts are numbers into a list that stands with the attribute's name.
+//! Detail attributes (values for the whole file) come last, and are read only if all primitives
+//! in between are lists of particles, whose size is known.
 
-use super::stream::Stream;
+use super::numbered_texts;
 use crate::scene::particles::Attribute;
 use crate::scene::particles::error::{ReadError, counted, shown};
 use crate::scene::particles::finish::Found;
+use crate::scene::particles::stream::Stream;
 use crate::scene::particles::values::{Kind, Layout, Order, Values};
 
 /// An attribute as its definition tells it.
 struct Definition {
     name: String,
     components: usize,
-    /// None for indices into a list of strings.
-    kind: Option<Kind>,
+    kind: Kind,
+    /// What the numbers stand for, if they stand for texts.
+    texts: Option<Vec<String>>,
 }
 
 pub(super) fn read(stream: &mut Stream<'_>) -> Result<Found, ReadError> {
@@ -38,17 +41,13 @@ pub(super) fn read(stream: &mut Stream<'_>) -> Result<Found, ReadError> {
         notes.push("some positions have a weight other than 1, which is not used".to_owned());
     }
     let mut start = 16;
-    for Definition { name, components, kind } in definitions {
-        match kind {
-            Some(kind) => {
-                let values = gather(start, components, kind);
-                found.attributes.push(Attribute { name, components, values });
-            }
-            None => notes.push(format!("attribute `{name}` is left out: it holds text")),
-        }
+    for Definition { name, components, kind, texts } in definitions {
+        let values = gather(start, components, kind);
+        notes.extend(texts.map(|texts| numbered_texts(&name, &texts)));
+        found.attributes.push(Attribute { name, components, values });
         start += components * 4;
     }
-    if counts.primitives == 0 && counts.detail_attributes > 0 {
+    if counts.detail_attributes > 0 && skip_primitives(stream, &counts)? {
         found.globals = details(stream, &counts)?;
     }
     found.notes = notes;
@@ -96,36 +95,53 @@ fn definition(stream: &mut Stream<'_>) -> Result<Definition, ReadError> {
     let what = format!("attribute `{name}`");
     let components = short(stream, &what)?;
     let at = stream.offset();
-    let kind = match integer(stream, &what)? {
-        0 | 5 => Some(Kind::F32),
-        1 => Some(Kind::I32),
-        4 => None,
+    let (kind, has_texts) = match integer(stream, &what)? {
+        0 | 5 => (Kind::F32, false),
+        1 => (Kind::I32, false),
+        4 => (Kind::I32, true),
         2 => return Err(stream.error_at(at, format!("{what}: strings in rows are not known"))),
         other => return Err(stream.error_at(at, format!("{what}: expected type 0, 1, 4 or 5, found {other}"))),
     };
-    match kind {
-        Some(_) => {
-            stream.take(components * 4, &what)?;
+    let mut texts = None;
+    if has_texts {
+        let list = texts.insert(Vec::new());
+        for _ in 0..count(stream, &what)? {
+            list.push(string(stream, &what)?);
         }
-        None => {
-            for _ in 0..count(stream, &what)? {
-                string(stream, &what)?;
-            }
-        }
+    } else {
+        stream.take(components * 4, &what)?;
     }
-    Ok(Definition { name, components, kind })
+    Ok(Definition { name, components, kind, texts })
+}
+
+/// A primitive that lists particles.
+const PARTICLE_LIST: i32 = 0x8000;
+
+/// Reads over the primitives; false if one has no size that is known, so that what follows
+/// cannot be found.
+fn skip_primitives(stream: &mut Stream<'_>, counts: &Counts) -> Result<bool, ReadError> {
+    // Without primitives these have definitions but no rows.
+    let of_vertices = definitions(stream, counts.vertex_attributes)?;
+    let of_primitives = definitions(stream, counts.primitive_attributes)?;
+    let row = of_primitives.iter().map(|d| d.components * 4).sum::<usize>();
+    for _ in 0..counts.primitives {
+        if integer(stream, "a primitive")? != PARTICLE_LIST || !of_vertices.is_empty() {
+            return Ok(false);
+        }
+        let index = if counts.points >= 1 << 16 { 4 } else { 2 };
+        let members = count(stream, "the length of a list of particles")?;
+        stream.take(members.saturating_mul(index).saturating_add(row), "a list of particles")?;
+    }
+    Ok(true)
 }
 
 /// Single numbers among the values for the whole file.
 fn details(stream: &mut Stream<'_>, counts: &Counts) -> Result<Vec<(String, f64)>, ReadError> {
-    // Without primitives these have definitions but no rows.
-    definitions(stream, counts.vertex_attributes)?;
-    definitions(stream, counts.primitive_attributes)?;
     let mut globals = Vec::new();
     let definitions = definitions(stream, counts.detail_attributes)?;
-    for Definition { name, components, kind } in definitions {
+    for Definition { name, components, kind, texts } in definitions {
         let bytes = stream.take(components * 4, &format!("detail attribute `{name}`"))?;
-        if let (Some(kind), 1) = (kind, components) {
+        if components == 1 && texts.is_none() {
             let layout = Layout { start: 0, stride: 4, components };
             globals.extend(Values::gather(kind, bytes, layout, 1, Order::Big).uniform().map(|value| (name, value)));
         }

@@ -6,8 +6,8 @@ use std::rc::Rc;
 
 use half::f16;
 
-use super::stream::Stream;
 use crate::scene::particles::error::ReadError;
+use crate::scene::particles::stream::Stream;
 use crate::scene::particles::values::{Kind, Layout, Order, Values};
 
 #[derive(Clone, Debug, PartialEq)]
@@ -39,14 +39,15 @@ pub(super) enum Items {
 pub(super) struct Json<'s, 'a> {
     pub stream: &'s mut Stream<'a>,
     order: Order,
-    texts: HashMap<usize, Rc<str>>,
+    known: HashMap<usize, Rc<str>>,
 }
 
 const WHAT: &str = "binary JSON";
+const MOST_TEXTS: usize = 16;
 
 impl<'s, 'a> Json<'s, 'a> {
     pub fn new(stream: &'s mut Stream<'a>, order: Order) -> Self {
-        Self { stream, order, texts: HashMap::new() }
+        Self { stream, order, known: HashMap::new() }
     }
 
     /// The next token. Definitions of strings and separators are read over.
@@ -80,12 +81,12 @@ impl<'s, 'a> Json<'s, 'a> {
                 0x2b => {
                     let id = self.length()?;
                     let text = self.text()?;
-                    self.texts.insert(id, text);
+                    self.known.insert(id, text);
                     continue;
                 }
                 0x2d => {
                     let id = self.length()?;
-                    self.texts.remove(&id);
+                    self.known.remove(&id);
                     continue;
                 }
                 // Separators of keys and of values.
@@ -167,6 +168,36 @@ impl<'s, 'a> Json<'s, 'a> {
             }
             token = self.next()?;
         }
+    }
+
+    /// The first texts of a list of texts: a few tell a person enough, and a small file can name
+    /// a long one many times.
+    pub fn texts(&mut self, token: Token) -> Result<Vec<String>, ReadError> {
+        let mut all = Vec::new();
+        match token {
+            Token::ArrayBegin => loop {
+                match self.next()? {
+                    Token::Text(text) if all.len() < MOST_TEXTS => all.push(text.to_string()),
+                    Token::Text(_) => {}
+                    Token::ArrayEnd => return Ok(all),
+                    other => return Err(self.unexpected("a string", &other)),
+                }
+            },
+            Token::Uniform(Items::Text, count) => {
+                for _ in 0..count {
+                    let text = self.text()?;
+                    all.extend((all.len() < MOST_TEXTS).then(|| text.to_string()));
+                }
+            }
+            Token::Uniform(Items::TextNumbers, count) => {
+                for _ in 0..count {
+                    let text = self.named_text()?;
+                    all.extend((all.len() < MOST_TEXTS).then(|| text.to_string()));
+                }
+            }
+            other => return Err(self.unexpected("a list of strings", &other)),
+        }
+        Ok(all)
     }
 
     pub fn unexpected(&self, expected: &str, found: &Token) -> ReadError {
@@ -267,7 +298,7 @@ impl<'s, 'a> Json<'s, 'a> {
 
     fn named_text(&mut self) -> Result<Rc<str>, ReadError> {
         let id = self.length()?;
-        let text = self.texts.get(&id).cloned();
+        let text = self.known.get(&id).cloned();
         text.ok_or_else(|| self.stream.error(format!("{WHAT}: string {id} was not defined")))
     }
 

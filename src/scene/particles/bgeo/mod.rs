@@ -3,13 +3,21 @@
 
 mod classic;
 mod json;
-mod stream;
 mod tree;
 
 use super::error::{ReadError, shown};
 use super::finish::Found;
+use super::stream::Stream;
 use super::values::Order;
-use stream::Stream;
+
+/// A note about an attribute whose values stand for texts.
+fn numbered_texts(name: &str, texts: &[String]) -> String {
+    const MOST: usize = 8;
+    let listed: Vec<String> =
+        texts.iter().take(MOST).enumerate().map(|(i, text)| format!("{i} for {}", shown(text.as_bytes()))).collect();
+    let more = if texts.len() > MOST { ", …" } else { "" };
+    format!("attribute `{name}` holds text, which is given as numbers: {}{more}", listed.join(", "))
+}
 
 pub(super) fn read(bytes: &[u8]) -> Result<Found, ReadError> {
     let mut stream = Stream::new(bytes);

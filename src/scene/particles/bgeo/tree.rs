@@ -2,10 +2,11 @@
 //! for the whole file are read.
 
 use super::json::{Json, Token};
-use super::stream::Stream;
+use super::numbered_texts;
 use crate::scene::particles::Attribute;
 use crate::scene::particles::error::{ReadError, counted};
 use crate::scene::particles::finish::Found;
+use crate::scene::particles::stream::Stream;
 use crate::scene::particles::values::{Kind, Order, Values};
 
 /// Values that are alike are stored once a page, so rows can take more memory than they have
@@ -71,6 +72,15 @@ struct Block {
     data: Option<Data>,
 }
 
+/// What an attribute holds.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Content {
+    Numbers,
+    /// Numbers into a list of texts.
+    Texts,
+    Others,
+}
+
 enum Data {
     Pages(Values),
     /// Row after row.
@@ -109,8 +119,8 @@ impl Reader<'_, '_> {
                 Token::ArrayEnd => return Ok(()),
                 other => return Err(self.json.unexpected("an attribute", &other)),
             }
-            let (name, numeric) = self.definition()?;
-            let block = self.body(numeric)?;
+            let (name, kind) = self.definition()?;
+            let (block, texts) = self.body(kind)?;
             match self.json.next()? {
                 Token::ArrayEnd => {}
                 other => return Err(self.json.unexpected("the end of an attribute", &other)),
@@ -118,9 +128,12 @@ impl Reader<'_, '_> {
             match block {
                 Some(block) if of_points => {
                     let (components, values) = (block.size, self.values(&name, block, rows)?);
+                    if kind == Content::Texts {
+                        self.notes.push(numbered_texts(&name, &texts));
+                    }
                     self.attributes.push(Attribute { name, components, values });
                 }
-                Some(block) if block.size == 1 => {
+                Some(block) if block.size == 1 && kind == Content::Numbers => {
                     let value = self.values(&name, block, rows)?.uniform();
                     self.globals.extend(value.map(|value| (name, value)));
                 }
@@ -130,32 +143,43 @@ impl Reader<'_, '_> {
         }
     }
 
-    /// The name, and whether the values are numbers.
-    fn definition(&mut self) -> Result<(String, bool), ReadError> {
+    /// The name, and what the values are.
+    fn definition(&mut self) -> Result<(String, Content), ReadError> {
         let mut name = String::new();
-        let mut numeric = false;
+        let mut content = Content::Others;
         self.json.begin()?;
         while let Some(key) = self.json.key()? {
             match &*key {
                 "name" => name = self.json.expect_text()?.to_string(),
-                "type" => numeric = &*self.json.expect_text()? == "numeric",
+                "type" => {
+                    content = match &*self.json.expect_text()? {
+                        "numeric" => Content::Numbers,
+                        "string" => Content::Texts,
+                        _ => Content::Others,
+                    }
+                }
                 _ => self.skip()?,
             }
         }
-        Ok((name, numeric))
+        Ok((name, content))
     }
 
-    fn body(&mut self, numeric: bool) -> Result<Option<Block>, ReadError> {
+    /// The values, and the texts that they stand for.
+    fn body(&mut self, content: Content) -> Result<(Option<Block>, Vec<String>), ReadError> {
         let mut block = None;
+        let mut texts = Vec::new();
         self.json.begin()?;
         while let Some(key) = self.json.key()? {
-            if &*key == "values" && numeric {
-                block = Some(self.block()?);
-            } else {
-                self.skip()?;
+            match (&*key, content) {
+                ("values", Content::Numbers) | ("indices", Content::Texts) => block = Some(self.block()?),
+                ("strings", Content::Texts) => {
+                    let token = self.json.next()?;
+                    texts = self.json.texts(token)?;
+                }
+                _ => self.skip()?,
             }
         }
-        Ok(block)
+        Ok((block, texts))
     }
 
     fn block(&mut self) -> Result<Block, ReadError> {

@@ -12,15 +12,42 @@ use crate::scene::particles::cursor::Cursor;
 use crate::scene::particles::error::{Place, ReadError, counted};
 use crate::scene::particles::values::{Kind, Layout, Order, Values};
 
-/// Deflate packs at most so many bytes into one.
-const MOST_PACKED: usize = 1032;
+/// How blocks are packed.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Packing {
+    Zlib,
+    Lz4,
+}
+
+impl Packing {
+    fn of(compressor: &str) -> Result<Self, ReadError> {
+        match compressor {
+            "vtkZLibDataCompressor" => Ok(Self::Zlib),
+            "vtkLZ4DataCompressor" => Ok(Self::Lz4),
+            other => {
+                let name = other.strip_prefix("vtk").unwrap_or(other);
+                let name = name.strip_suffix("DataCompressor").unwrap_or(name);
+                let error = ReadError::new(format!("the data is compressed by {name}, which is not read"));
+                Err(error.hint("save the file with zlib or LZ4 compression or with none"))
+            }
+        }
+    }
+
+    /// At most so many bytes are packed into one.
+    fn most(self) -> usize {
+        match self {
+            Self::Zlib => 1032,
+            Self::Lz4 => 256,
+        }
+    }
+}
 
 /// Reads arrays as a file's first element says that they are encoded.
 pub(super) struct Blocks<'a> {
     bytes: &'a [u8],
     order: Order,
     header_size: usize,
-    compressed: bool,
+    packing: Option<Packing>,
     appended: Option<Appended>,
     /// Bytes of the file that arrays may still claim. Arrays do not overlap, so that a small file
     /// cannot become many large arrays.
@@ -45,18 +72,9 @@ fn size_error(array: &DataArray<'_>, expected: usize, found: &str, place: Option
 
 impl<'a> Blocks<'a> {
     pub fn new(bytes: &'a [u8], document: &Document<'_>) -> Result<Self, ReadError> {
-        let compressed = match document.compressor.as_deref() {
-            None => false,
-            Some("vtkZLibDataCompressor") => true,
-            Some(other) => {
-                let name = other.strip_prefix("vtk").unwrap_or(other);
-                let name = name.strip_suffix("DataCompressor").unwrap_or(name);
-                let error = ReadError::new(format!("the data is compressed by {name}, which is not read"));
-                return Err(error.hint("save the file with zlib compression or with none"));
-            }
-        };
+        let packing = document.compressor.as_deref().map(Packing::of).transpose()?;
         let Document { order, header_size, appended, .. } = *document;
-        Ok(Self { bytes, order, header_size, compressed, appended, unclaimed: bytes.len() })
+        Ok(Self { bytes, order, header_size, packing, appended, unclaimed: bytes.len() })
     }
 
     /// The line and column of a byte of the elements.
@@ -72,10 +90,9 @@ impl<'a> Blocks<'a> {
             Format::Appended(offset) => self.appended(array, offset)?,
         };
         let size = if array.bits { count.div_ceil(8) } else { count * kind.size() };
-        let decoded = if self.compressed {
-            Cow::Owned(self.inflated(array, &encoded, size, place)?)
-        } else {
-            self.plain(array, &encoded, size, place)?
+        let decoded = match self.packing {
+            Some(packing) => Cow::Owned(self.unpacked(array, &encoded, packing, size, place)?),
+            None => self.plain(array, &encoded, size, place)?,
         };
         if array.bits {
             return Ok(Values::from_bits(&decoded, count));
@@ -143,10 +160,11 @@ impl<'a> Blocks<'a> {
 
     /// The number of blocks, the size of each and of the last, the packed size of each; then the
     /// blocks.
-    fn inflated(
+    fn unpacked(
         &mut self,
         array: &DataArray<'_>,
         encoded: &Encoded<'_>,
+        packing: Packing,
         size: usize,
         place: Option<Place>,
     ) -> Result<Vec<u8>, ReadError> {
@@ -165,7 +183,7 @@ impl<'a> Blocks<'a> {
         let packed: Option<Vec<usize>> = (3..blocks + 3).map(|index| self.word(&header, index)).collect();
         let packed = packed.ok_or_else(too_large)?;
         let packed_size = packed.iter().fold(0, |sum: usize, &size| sum.saturating_add(size));
-        if size > packed_size.saturating_mul(MOST_PACKED) {
+        if size > packed_size.saturating_mul(packing.most()) {
             let message = format!("{} cannot unpack to {size}", counted(packed_size, "byte"));
             return Err(array_error(array, &message, place));
         }
@@ -176,7 +194,8 @@ impl<'a> Blocks<'a> {
             let (block, after) = rest.split_at(packed_size);
             rest = after;
             let block_size = if index + 1 == blocks { last_size } else { block_size };
-            inflate(block, block_size, &mut out)
+            packing
+                .unpack(block, block_size, &mut out)
                 .map_err(|message| array_error(array, &format!("block {} of {blocks}: {message}", index + 1), place))?;
         }
         Ok(out)
@@ -208,14 +227,23 @@ impl<'a> Blocks<'a> {
     }
 }
 
-/// Appends what a block unpacks to, which must be `size` bytes.
-fn inflate(block: &[u8], size: usize, out: &mut Vec<u8>) -> Result<(), String> {
-    let before = out.len();
-    let mut decoder = ZlibDecoder::new(block).take(size as u64 + 1);
-    decoder.read_to_end(out).map_err(|error| format!("the zlib data is damaged or cut off: {error}"))?;
-    match out.len() - before {
-        found if found == size => Ok(()),
-        found => Err(format!("expected {}, found {found}", counted(size, "byte"))),
+impl Packing {
+    /// Appends what a block unpacks to, which must be `size` bytes; that all blocks together can
+    /// be so many was checked.
+    fn unpack(self, block: &[u8], size: usize, out: &mut Vec<u8>) -> Result<(), String> {
+        let before = out.len();
+        let found = match self {
+            Self::Zlib => {
+                let mut decoder = ZlibDecoder::new(block).take(size as u64 + 1);
+                decoder.read_to_end(out).map_err(|error| format!("the zlib data is damaged or cut off: {error}"))?
+            }
+            Self::Lz4 => {
+                out.resize(before + size, 0);
+                lz4_flex::block::decompress_into(block, &mut out[before..])
+                    .map_err(|error| format!("the LZ4 data is damaged or cut off: {error}"))?
+            }
+        };
+        if found == size { Ok(()) } else { Err(format!("expected {}, found {found}", counted(size, "byte"))) }
     }
 }
 

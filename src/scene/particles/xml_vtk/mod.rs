@@ -1,6 +1,6 @@
 //! XML VTK: the points of unstructured grids (`.vtu`) and polygonal data (`.vtp`) with their
 //! point data, in one or several pieces. Arrays stand inline, as text or base64, or in the
-//! appended section, raw or base64, in either byte order, plain or compressed by zlib.
+//! appended section, raw or base64, in either byte order, plain or compressed by zlib or LZ4.
 
 mod blocks;
 mod document;

@@ -60,6 +60,17 @@ impl<'a> Stream<'a> {
         Ok(bytes.get(start..end).unwrap_or_default())
     }
 
+    /// Up to `count` bytes that come next, without moving on.
+    pub fn peek(&mut self, count: usize) -> Result<&[u8], ReadError> {
+        let (start, end) = (self.at, self.at.saturating_add(count));
+        let found = self.unpack(end)?;
+        let bytes = match &self.source {
+            Source::Plain(bytes) => bytes,
+            Source::Gzip { unpacked, .. } => unpacked.as_slice(),
+        };
+        Ok(bytes.get(start..end.min(found)).unwrap_or_default())
+    }
+
     /// Makes the first `end` bytes available, or as many as there are; tells how many there are.
     fn unpack(&mut self, end: usize) -> Result<usize, ReadError> {
         let Source::Gzip { packed, decoder, unpacked } = &mut self.source else {

@@ -1,0 +1,124 @@
+//! From the list of passes to commands: which are encoded together, and how each is timed.
+
+use std::ops::Range;
+
+use super::{Encoding, Recorder, can_be_timed, draw};
+use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::engine::bind::Variant;
+use crate::engine::errors;
+use crate::engine::gpu::Gpu;
+use crate::engine::prepare::Runner;
+use crate::plan::model::PassKind;
+
+impl Runner {
+    /// Encodes those passes of a range that are wanted; `None` wants all.
+    ///
+    /// # Errors
+    /// If the device refuses what a pass binds.
+    pub(in crate::engine) fn encode_range(
+        &mut self,
+        gpu: &Gpu,
+        only: Option<&[bool]>,
+        recorder: &mut Recorder,
+        range: Range<usize>,
+    ) -> Result<(), Diagnostic> {
+        let mut at = range.start;
+        while at < range.end {
+            let end = (at + 1..range.end).find(|p| self.leaders[*p] != self.leaders[at]).unwrap_or(range.end);
+            self.encode_group(gpu, only, recorder, at..end)?;
+            at = end;
+        }
+        Ok(())
+    }
+
+    /// Encodes a pass, or draws that share a render pass.
+    fn encode_group(
+        &mut self,
+        gpu: &Gpu,
+        only: Option<&[bool]>,
+        recorder: &mut Recorder,
+        group: Range<usize>,
+    ) -> Result<(), Diagnostic> {
+        let is_wanted = |index: &usize| only.is_none_or(|only| only.get(*index) != Some(&false));
+        let mut passes = 0;
+        for index in group.clone().filter(is_wanted) {
+            self.ensure_variant(gpu, index)?;
+            passes += 1;
+        }
+        if group.len() == 1 || passes == 1 {
+            for index in group.filter(is_wanted) {
+                self.encode_one(recorder, index);
+            }
+        } else if passes > 1 {
+            self.encode_draws(recorder, group.filter(is_wanted));
+        }
+        recorder.count(gpu, passes);
+        Ok(())
+    }
+
+    fn encode_one(&mut self, recorder: &mut Recorder, index: usize) {
+        let key = self.rotation_key(index);
+        let Some(variant) = self.variants[index].get(&key) else { return };
+        let is_timed = can_be_timed(variant, self.timing.times_encoders());
+        let joins = recorder.is_computing() && super::is_dispatch(variant);
+        let pair = self.timing.mark(index, is_timed, joins);
+        self.record(recorder, index, key, pair);
+    }
+
+    fn encode_draws(&mut self, recorder: &mut Recorder, group: impl Iterator<Item = usize> + Clone) {
+        let mut first = None;
+        for (nth, index) in group.clone().enumerate() {
+            let pair = self.timing.mark(index, true, nth > 0);
+            first = first.or(pair);
+        }
+        let mut encoding = self.encoding(recorder, first);
+        draw::encode(&mut encoding, group.filter_map(|index| self.part(index)));
+    }
+
+    fn part(&self, index: usize) -> Option<draw::Part<'_>> {
+        let pass = &self.plan.passes[index];
+        let variant = self.variants[index].get(&self.rotation_key(index))?;
+        let (PassKind::Draw(draw), Variant::Draw(variant)) = (&pass.kind, variant) else { return None };
+        Some(draw::Part { pass, draw, pipeline: self.pipelines[index].as_deref(), variant })
+    }
+
+    fn encoding<'a>(&'a self, recorder: &'a mut Recorder, pair: Option<u32>) -> Encoding<'a> {
+        Encoding {
+            recorder,
+            plan: &self.plan,
+            pool: &self.pool,
+            fixed: &self.fixed,
+            rotation: &self.rotation,
+            timing: &self.timing,
+            pair,
+            loads_are_free: self.loads_are_free,
+        }
+    }
+
+    fn record(&self, recorder: &mut Recorder, index: usize, key: usize, pair: Option<u32>) {
+        let Some(variant) = self.variants[index].get(&key) else { return };
+        let pipeline = self.pipelines[index].as_deref();
+        self.encoding(recorder, pair).pass(&self.plan.passes[index], pipeline, variant);
+    }
+
+    /// Which passes the device refuses, found by encoding each on its own.
+    pub(in crate::engine) fn blame(&mut self, gpu: &Gpu) -> Option<Diagnostics> {
+        let mut found = Diagnostics::new();
+        for index in 0..self.plan.passes.len() {
+            let refused = match self.ensure_variant(gpu, index) {
+                Err(diagnostic) => Some(diagnostic),
+                Ok(key) => {
+                    let mut recorder = Recorder::new(gpu);
+                    let pass = &self.plan.passes[index];
+                    let encoded = errors::scoped(gpu, || {
+                        self.record(&mut recorder, index, key, None);
+                        recorder.finish()
+                    });
+                    encoded.err().map(|e| errors::refused("the commands of", &pass.path, pass.span, &e))
+                }
+            };
+            found.0.extend(refused);
+        }
+        Some(found).filter(|f| !f.is_empty())
+    }
+}
