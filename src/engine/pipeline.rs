@@ -68,7 +68,7 @@ pub(super) enum RecipeKind {
         vertices: Vec<VertexSlot>,
         targets: Vec<Option<wgt::ColorTargetState>>,
         primitive: wgt::PrimitiveState,
-        depth: Option<wgt::DepthStencilState>,
+        depth: Option<Box<wgt::DepthStencilState>>,
         samples: u32,
     },
 }
@@ -101,7 +101,7 @@ struct DrawKey {
     vertices: Vec<VertexSlot>,
     targets: Vec<Option<wgt::ColorTargetState>>,
     primitive: wgt::PrimitiveState,
-    depth: Option<wgt::DepthStencilState>,
+    depth: Option<Box<wgt::DepthStencilState>>,
     samples: u32,
 }
 
@@ -246,7 +246,7 @@ impl PipelineCache {
                 buffers: &buffers,
             },
             primitive: *primitive,
-            depth_stencil: depth.clone(),
+            depth_stencil: depth.as_deref().cloned(),
             multisample: wgpu::MultisampleState { count: *samples, ..wgpu::MultisampleState::default() },
             fragment: fragment_module.as_ref().map(|(module, stage, constants)| wgpu::FragmentState {
                 module,

@@ -302,7 +302,7 @@ fn draw_recipe(plan: &Plan, draw: &Draw) -> Result<Recipe, String> {
             vertices: meshes::slots(draw),
             targets: draw.color.iter().map(|t| Some(convert::color_target(t))).collect(),
             primitive: convert::primitive(draw),
-            depth: draw.depth.as_ref().map(convert::depth_stencil),
+            depth: draw.depth.as_ref().map(convert::depth_stencil).map(Box::new),
             samples: draw.samples.max(1),
         },
     })

@@ -282,7 +282,8 @@ impl Loader<'_> {
                     Input::Particles(particles) => Some(particles),
                     _ => None,
                 });
-                let (positions, radius) = seen.map_or_else(Default::default, |p| (p.set.positions(), p.radius_m));
+                let (positions, radius) =
+                    seen.map_or_else(|| (corners(inputs).into(), 0.0), |p| (p.set.positions(), p.radius_m));
                 framing::frame(&positions, radius, viewport, job.fov_degrees.unwrap_or(framing::FOV_DEGREES))
             }
         };
@@ -312,6 +313,17 @@ impl Loader<'_> {
         }
         found
     }
+}
+
+/// The corners of the boxes around all bodies.
+fn corners(inputs: &BTreeMap<String, Input>) -> Vec<[f32; 3]> {
+    let boxes = inputs.values().filter_map(|input| match input {
+        Input::Meshes(meshes) if meshes.info.instances > 0 => Some([meshes.info.min, meshes.info.max]),
+        _ => None,
+    });
+    boxes
+        .flat_map(|ends| (0..8).map(move |corner| [0, 1, 2].map(|axis| ends[corner >> axis & 1][axis] as f32)))
+        .collect()
 }
 
 impl Content {

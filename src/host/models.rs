@@ -8,7 +8,7 @@ use std::thread::{self, JoinHandle};
 
 use super::meshes::Meshes;
 use crate::diagnostic::{Code, Diagnostic, Diagnostics, Span};
-use crate::scene::meshes::{Bundle, Model, known_extension, read};
+use crate::scene::meshes::{Bundle, Model, read};
 use crate::scene::{Item, MeshEntry};
 
 /// What was read and put together before.
@@ -56,13 +56,7 @@ impl Reading {
         let path = bundle.path.clone();
         let work = match known.read.get(&path) {
             Some((before, model)) if *before == hash => Work::Done(Arc::clone(model)),
-            _ => Work::Running(thread::spawn(move || {
-                if known_extension(&bundle.path) {
-                    return read(&bundle);
-                }
-                let message = format!("`{}` is no mesh file by its name", bundle.path.display());
-                Err(Diagnostic::error(Code::ASSET, message).hint("known are .gltf, .glb, .obj, .ply and .vtk").into())
-            })),
+            _ => Work::Running(thread::spawn(move || read(&bundle))),
         };
         self.0.insert(path, (hash, at, work));
     }
