@@ -261,7 +261,7 @@ pub fn what_does_not_fit_is_told(_: &mut Engine) {
         (plain(), r#"(file: "red.gltf", colour: 3)"#, "a body has no field `colour`"),
         (lifting.clone(), r#"(file: "red.gltf")"#, "body 0 of `meshes` has no value `lift`"),
         (lifting.clone(), r#"(file: "red.gltf", values: {"lift": 3})"#, "`lift` must be at most 2, and is 3"),
-        (lifting, r#"(file: "red.gltf", values: {"lift": "high"})"#, "`lift` is a Float and cannot be 'high'"),
+        (lifting, r#"(file: "red.gltf", values: {"lift": "high"})"#, "`lift` is a Float and cannot be high"),
     ] {
         let text = said(graph, bodies);
         assert!(text.contains(words), "no {words:?} in:\n{text}");
