@@ -324,7 +324,7 @@ impl Lowering<'_> {
 }
 
 /// The fields of an input of a kind: what follows its name and a dot.
-pub(super) fn input_fields(kind: &InputKind) -> impl Iterator<Item = &str> {
+pub(crate) fn input_fields(kind: &InputKind) -> impl Iterator<Item = &str> {
     let (table, attributes): (&[(&str, fields::FieldType)], &[Attribute]) = match kind {
         InputKind::Camera => (fields::CAMERA, &[]),
         InputKind::Light => (fields::LIGHT, &[]),
