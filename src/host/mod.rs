@@ -13,6 +13,7 @@ mod load;
 pub mod params;
 pub mod picture;
 mod source;
+mod state;
 
 pub use assets::{Cache, Particles};
 pub use build::{Builder, Built, Planned, Session};
