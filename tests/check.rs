@@ -7,6 +7,7 @@ mod golden;
 
 mod check {
     mod cases;
+    mod devices;
     mod ids;
     mod mutations;
     mod requests;

@@ -2,8 +2,12 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
+#[path = "support/golden.rs"]
+mod golden;
 #[path = "support/project.rs"]
 mod project;
+#[path = "cli/texts.rs"]
+mod texts;
 
 use project::{Project, Run, has_adapter, shared};
 

@@ -8,8 +8,14 @@ mod build;
 mod forms;
 #[path = "support/golden.rs"]
 mod golden;
+#[path = "meshes/hostile.rs"]
+mod hostile;
+#[path = "meshes/obj.rs"]
+mod obj;
 #[path = "meshes/shared.rs"]
 mod shared;
+#[path = "meshes/wrong.rs"]
+mod wrong;
 
 use std::path::Path;
 

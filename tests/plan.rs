@@ -19,5 +19,6 @@ mod plan {
     mod printed;
     mod random;
     mod shipped;
+    mod state;
     mod units;
 }

@@ -3,11 +3,15 @@
 //!
 //! What a warning says ("unused") must hold in every variant; an error in any one is an error.
 
+mod branches;
+mod clashes;
+mod device;
 mod passes;
 mod variants;
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
+pub use device::Device;
 use variants::Variant;
 
 use crate::diagnostic::{Code, Diagnostic, Diagnostics, Severity};
@@ -18,14 +22,35 @@ use crate::program::Program;
 
 /// Everything that is wrong with a program, and what is odd about it in every variant.
 pub fn check(program: &Program) -> Diagnostics {
+    let device = Device::anything();
+    let (mut found, plan) = check_with(program, &device);
+    plan.and_then(|plan| beyond_defaults(program, &plan)).into_iter().for_each(|note| found.push(note));
+    found
+}
+
+/// The same for a device: what it lacks is an error with the parameters' defaults, and a warning
+/// with other values.
+pub fn check_on(program: &Program, device: &Device) -> Diagnostics {
+    let (found, _) = check_with(program, device);
+    let is_default = |d: &Diagnostic| !d.hints.iter().any(|hint| hint.starts_with(FOUND_WITH));
+    let explained = found.0.into_iter().map(|d| (is_default(&d), d)).map(|(at, d)| device.explain(d, at));
+    Diagnostics(explained.collect())
+}
+
+fn check_with(program: &Program, device: &Device) -> (Diagnostics, Option<Plan>) {
     let mut found = passes::names(program);
-    let base = variants::base(program);
+    found.extend(clashes::clashes(program));
+    found.extend(branches::differing(program));
+    let base = variants::base(program, device);
     let plan = match plan::instantiate_stand_in(program, &base) {
         Ok(plan) => plan,
         // The variants would only say the same again.
         Err(diagnostics) => {
-            found.extend(diagnostics);
-            return found;
+            // A clash was told where the names are declared; not again at the shader that uses them.
+            let is_clash = |d: &Diagnostic| d.id == Code::NAME_CLASH;
+            let told = found.iter().any(is_clash);
+            found.extend(Diagnostics(diagnostics.0.into_iter().filter(|d| !(told && is_clash(d))).collect()));
+            return (found, None);
         }
     };
     let mut odd = oddities(&plan);
@@ -40,10 +65,8 @@ pub fn check(program: &Program) -> Diagnostics {
             }
         }
     }
-    for diagnostic in odd.into_iter().chain(beyond_defaults(program, &plan)) {
-        found.push(diagnostic);
-    }
-    found
+    odd.into_iter().for_each(|diagnostic| found.push(diagnostic));
+    (found, Some(plan))
 }
 
 /// The oddities of a variant, or its errors and the words that say what it is.
@@ -106,7 +129,7 @@ fn beyond_defaults(program: &Program, plan: &Plan) -> Option<Diagnostic> {
 /// The scene that programs are checked with: it has everything that the graph asks for, also what
 /// is optional.
 pub fn stand_in(program: &Program) -> Request {
-    variants::base(program)
+    variants::base(program, &Device::anything())
 }
 
 /// Warnings of a plan, and its culled passes: the same pass in a loop or in a part used twice
@@ -131,10 +154,13 @@ fn oddities(plan: &Plan) -> Vec<Diagnostic> {
     all
 }
 
+/// How the hint of what only a variant shows begins.
+const FOUND_WITH: &str = "found with ";
+
 /// Keeps an error that was not seen yet, saying with which variant it came.
 fn keep_new(found: &mut Diagnostics, diagnostic: Diagnostic, said: &str) {
     let seen = found.iter().any(|d| d.id == diagnostic.id && d.labels == diagnostic.labels);
     if diagnostic.severity == Severity::Error && !seen {
-        found.push(diagnostic.hint(format!("found with {said}; the defaults are fine")));
+        found.push(diagnostic.hint(format!("{FOUND_WITH}{said}; the defaults are fine")));
     }
 }

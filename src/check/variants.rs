@@ -1,22 +1,21 @@
 //! The stand-in scene, and the variants of it that are checked.
 
-use wgpu_types::{Features, Limits};
-
+use super::device::Device;
 use crate::graph::model::{InputKind, ParamKind};
 use crate::graph::value::Value;
 use crate::plan::model::{InputInfo, Param, Plan, Request};
 use crate::program::Program;
 
 /// A scene that has everything that the graph asks for, also what is optional.
-pub(super) fn base(program: &Program) -> Request {
+pub(super) fn base(program: &Program, device: &Device) -> Request {
     let mut request = Request {
         viewport: [640, 480],
         params: Default::default(),
         inputs: Default::default(),
         capacities: Default::default(),
         roots: Vec::new(),
-        features: Features::all(),
-        limits: unlimited(),
+        features: device.features,
+        limits: device.limits.clone(),
     };
     for input in &program.root.inputs {
         if let Some(info) = stand_in(program, &input.kind) {
@@ -161,29 +160,4 @@ fn other_values(param: &Param) -> Vec<Value> {
     };
     values.retain(|value| *value != param.value);
     values
-}
-
-/// A device that can do everything: what a graph needs is reported, not refused.
-fn unlimited() -> Limits {
-    Limits {
-        max_texture_dimension_2d: u32::MAX,
-        max_texture_dimension_3d: u32::MAX,
-        max_texture_array_layers: u32::MAX,
-        max_buffer_size: u64::MAX,
-        max_color_attachments: u32::MAX,
-        max_color_attachment_bytes_per_sample: u32::MAX,
-        max_compute_invocations_per_workgroup: u32::MAX,
-        max_compute_workgroup_size_x: u32::MAX,
-        max_compute_workgroup_size_y: u32::MAX,
-        max_compute_workgroup_size_z: u32::MAX,
-        max_compute_workgroup_storage_size: u32::MAX,
-        max_uniform_buffers_per_shader_stage: u32::MAX,
-        max_uniform_buffer_binding_size: u32::MAX.into(),
-        max_storage_buffers_per_shader_stage: u32::MAX,
-        max_storage_buffer_binding_size: u32::MAX.into(),
-        max_sampled_textures_per_shader_stage: u32::MAX,
-        max_storage_textures_per_shader_stage: u32::MAX,
-        max_samplers_per_shader_stage: u32::MAX,
-        ..Limits::default()
-    }
 }

@@ -126,6 +126,10 @@ pub struct CheckArgs {
     /// Warnings are findings too
     #[arg(long)]
     pub deny_warnings: bool,
+    /// A device that all of it must run on: `core` is what every browser has, `native` what desktops
+    /// have; a FILE is what `info --format json` wrote elsewhere
+    #[arg(long, value_name = "core|native|FILE")]
+    pub device: Option<String>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

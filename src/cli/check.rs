@@ -5,17 +5,23 @@ use std::path::Path;
 
 use super::args::{CheckArgs, CheckFormat};
 use super::report::{Exit, print, report, say};
+use crate::check::{self, Device};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics, Severity, Sources, to_json};
 use crate::files::{DiskFiles, Files as _};
 use crate::host::{Cache, Job, load};
+use crate::program::{self, Program};
 use crate::syntax;
-use crate::{check, plan, program, shader};
+use crate::{plan, shader};
 
 pub fn run(args: &CheckArgs) -> Exit {
     let mut sources = Sources::new();
     let mut found = Diagnostics::new();
+    let device = match args.device.as_deref().map(device).transpose() {
+        Ok(device) => device,
+        Err(error) => return report(&error.into(), &sources),
+    };
     for file in &args.files {
-        found.extend(check_file(file, &mut sources));
+        found.extend(check_file(file, device.as_ref(), &mut sources));
     }
     let exit = match args.format {
         CheckFormat::Text => report(&found, &sources),
@@ -36,16 +42,33 @@ pub fn run(args: &CheckArgs) -> Exit {
     }
 }
 
+/// A device by its name, or from a file.
+fn device(name: &str) -> Result<Device, Diagnostic> {
+    if let Some(device) = Device::named(name) {
+        return Ok(device);
+    }
+    let bytes = std::fs::read(name).map_err(|error| {
+        let message = format!("`--device {name}`: the file cannot be read: {error}");
+        Diagnostic::error(Code::FILE_UNREADABLE, message).hint("or say `core` or `native`")
+    })?;
+    Device::from_json(name, &String::from_utf8_lossy(&bytes))
+}
+
+/// Everything that is wrong with a program, for a device if one is asked for.
+fn check_program(program: &Program, device: Option<&Device>) -> Diagnostics {
+    device.map_or_else(|| check::check(program), |device| check::check_on(program, device))
+}
+
 /// Everything that is wrong with a file and with what it names.
-fn check_file(path: &Path, sources: &mut Sources) -> Diagnostics {
+fn check_file(path: &Path, device: Option<&Device>, sources: &mut Sources) -> Diagnostics {
     match kind(path) {
-        Ok(FileKind::Shader) => shader::load(&DiskFiles, sources, &name(path), None).diagnostics,
-        Ok(FileKind::Scene) => check_scene(path, sources),
+        Ok(FileKind::Shader) => check_shader(path, device, sources),
+        Ok(FileKind::Scene) => check_scene(path, device, sources),
         Ok(FileKind::Graph) => {
             let loaded = program::load(&DiskFiles, sources, &name(path), None);
             let mut found = loaded.diagnostics;
             if let Some(program) = &loaded.program {
-                found.extend(check::check(program));
+                found.extend(check_program(program, device));
             }
             found
         }
@@ -53,19 +76,29 @@ fn check_file(path: &Path, sources: &mut Sources) -> Diagnostics {
     }
 }
 
+/// A shader by itself: that it is right, and that the device has what it needs.
+fn check_shader(path: &Path, device: Option<&Device>, sources: &mut Sources) -> Diagnostics {
+    let loaded = shader::load(&DiskFiles, sources, &name(path), None);
+    let mut found = loaded.diagnostics;
+    if let (Some(module), Some(device)) = (&loaded.module, device) {
+        device.lacking(module).into_iter().for_each(|lacking| found.push(lacking));
+    }
+    found
+}
+
 /// The scene, its files and its graph, and the plan for just this scene.
-fn check_scene(path: &Path, sources: &mut Sources) -> Diagnostics {
+fn check_scene(path: &Path, device: Option<&Device>, sources: &mut Sources) -> Diagnostics {
     let job = Job { source: path.to_owned(), ..Job::default() };
     let loaded = load(&DiskFiles, sources, &job, &mut Cache::default());
     let mut found = loaded.diagnostics;
     if let Some(content) = &loaded.content {
-        found.extend(check::check(&content.program));
-        let stand_in = check::stand_in(&content.program);
-        let request = content.request(stand_in.features, stand_in.limits, &BTreeMap::new());
+        found.extend(check_program(&content.program, device));
+        let on = device.cloned().unwrap_or_else(Device::anything);
+        let request = content.request(on.features, on.limits, &BTreeMap::new());
         match plan::instantiate(&content.program, &request) {
             Ok(plan) => found.extend(plan.warnings),
             // A warning of the variants that is an error here is told as the error.
-            Err(errors) => found.extend(errors),
+            Err(errors) => found.extend(device.map_or(errors.clone(), |device| device.explained(errors))),
         }
     }
     found

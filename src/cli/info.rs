@@ -8,11 +8,12 @@ use wgpu_types::{Features, Limits};
 
 use super::args::{CheckFormat, InfoArgs};
 use super::report::{Exit, print, report};
+use crate::check::{self, Device};
 use crate::diagnostic::{Code, Diagnostic, Sources};
 use crate::engine::{AdapterSummary, Gpu, GpuOptions};
 use crate::files::{self, DiskFiles, LIBRARY};
 use crate::plan::model::Needs;
-use crate::{check, plan, program};
+use crate::{plan, program};
 
 pub fn run(args: &InfoArgs) -> Exit {
     let adapters = match Gpu::adapters(&GpuOptions::default()) {
@@ -106,7 +107,9 @@ fn described(needs: &Needs) -> String {
 
 fn as_json(adapters: &[AdapterSummary], graphs: &[(String, Result<Needs, usize>)]) -> Json {
     let adapter = |a: &AdapterSummary| {
-        let limits: Json = limits(&a.limits).into_iter().map(|(name, value)| (name.to_owned(), json!(value))).collect();
+        // Under the names that `check --device` reads them by.
+        let limits: Json =
+            Device::limits_by_name(&a.limits).map(|(name, value)| (name.to_owned(), json!(value))).collect();
         json!({
             "name": a.info.name, "backend": a.info.backend.to_string(), "type": format!("{:?}", a.info.device_type),
             "driver": a.info.driver, "driver_info": a.info.driver_info,

@@ -7,7 +7,7 @@ use super::bind::stat_of;
 use super::encode::Begun;
 use super::gpu::Gpu;
 use super::report::{CountReport, PassReport, Report};
-use crate::plan::model::{ObjectKind, PassKind, Plan};
+use crate::plan::model::{ObjectKind, Origin, PassKind, Plan};
 
 /// Frames whose answers may be on their way at once.
 const IN_FLIGHT: usize = 3;
@@ -365,7 +365,8 @@ fn counts(plan: &Plan, frame: &Frame, stats: &[u8]) -> Vec<CountReport> {
                 path: object.path.clone(),
                 raw,
                 capacity: buffer.items,
-                in_steps: pass.steps.is_some(),
+                // What steps fill may be settled first where it is read behind them.
+                in_steps: pass.steps.is_some() || matches!(object.origin, Origin::State(_)),
             }),
         }
     }

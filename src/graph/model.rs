@@ -482,5 +482,7 @@ pub struct Steps {
     pub name: Option<Name>,
     /// Hz; absent: once a frame.
     pub rate: Option<Expr>,
+    /// All state of the steps starts anew when its value changes.
+    pub key: Option<Expr>,
     pub passes: Vec<Node>,
 }

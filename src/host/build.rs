@@ -6,6 +6,7 @@ use std::collections::BTreeMap;
 use super::inputs::Input;
 use super::load::{COLOR, Content};
 use super::meshes::Meshes;
+use super::state::Held;
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::engine::{Compiled, Compiler, Engine, Gpu, MaterialImage, MaterialSampler, MaterialSlots, Runner, packing};
 use crate::graph::value::Value;
@@ -54,6 +55,8 @@ pub struct Built {
     pub memory_bytes: u64,
     /// Notes and warnings of planning.
     pub diagnostics: Diagnostics,
+    /// Which state starts anew, and why; for those that let it go on.
+    pub resets: Diagnostics,
 }
 
 impl Session {
@@ -91,6 +94,7 @@ impl Session {
     pub fn install(&mut self, planned: Planned) -> Result<Built, Diagnostics> {
         let Planned { content, plan, present: present_plan, compiled } = planned;
         let warnings = plan.warnings.clone();
+        let held = self.plan().map(Held::of).unwrap_or_default();
         let present_before = self.present.take();
         let mut present = match self.engine.prepare(present_plan, present_before) {
             Ok(runner) => runner,
@@ -119,6 +123,7 @@ impl Session {
             pipelines_reused: reused.saturating_sub(compiled.built),
             memory_bytes: graph.memory_bytes() + present.memory_bytes(),
             diagnostics: warnings,
+            resets: held.resets(graph.plan(), &reports[0].state_kept),
         };
         (self.graph, self.present) = (Some(graph), Some(present));
         // Without content, what was uploaded in part is uploaded whole at the next build.

@@ -15,6 +15,7 @@ mod models;
 pub mod params;
 pub mod picture;
 mod source;
+mod state;
 
 pub use assets::{Cache, Particles};
 pub use build::{Builder, Built, Planned, Session};

@@ -1,10 +1,8 @@
-//! What is read was written before: program order over subresources, conflicts inside a pass, and
-//! the rules of state.
-
-use std::collections::BTreeMap;
+//! What is read was written before: program order over subresources, and conflicts inside a pass.
 
 use super::lower::{FlatPass, Lowering, Place, fault, traced};
 use super::model::{Access, Bound, ObjectId, ObjectKind, ObjectRef, Origin, Output, PassKind};
+use super::state;
 use crate::diagnostic::{Code, Diagnostic};
 
 /// For each object, which (mip, layer) something wrote.
@@ -45,7 +43,7 @@ pub(super) fn check(lowering: &mut Lowering<'_>, outputs: &[Output]) {
     }
     faults.extend(outputs.iter().filter_map(|output| written.missing_output(lowering, output)).map(|fault| *fault));
     faults.extend(hidden_writes(lowering, outputs));
-    faults.extend(state_rules(lowering));
+    faults.extend(state::check(lowering));
     for fault in faults {
         lowering.diagnostics.push(fault);
     }
@@ -231,60 +229,6 @@ fn hidden_writes(lowering: &Lowering<'_>, outputs: &[Output]) -> Vec<Diagnostic>
             .see(building.object.span, "declared here")
             .hint(format!("add \"{name}\" to `outputs`, or copy it to a resource first"));
         faults.push(*traced(diagnostic, &flat.trace));
-    }
-    faults
-}
-
-/// State is written inside exactly one `Steps`.
-fn state_rules(lowering: &mut Lowering<'_>) -> Vec<Diagnostic> {
-    let mut faults = Vec::new();
-    for id in 0..lowering.objects.len() {
-        if !matches!(lowering.objects[id].object.origin, Origin::State(_)) {
-            continue;
-        }
-        let object = &lowering.objects[id].object;
-        let mut writers = BTreeMap::new();
-        for flat in &lowering.flat {
-            for (access, place) in flat.pass.accesses.iter().zip(&flat.places) {
-                if !access.write || !lowering.object_ids(access.object).contains(&id) {
-                    continue;
-                }
-                match flat.pass.steps {
-                    Some(steps) => _ = writers.entry(steps).or_insert(place.graph),
-                    None => {
-                        let message = format!("the state `{}` is written outside `Steps`", object.path);
-                        let diagnostic = fault(Code::STATE, message, place.graph, "written here")
-                            .see(object.span, "declared as state")
-                            .hint("state is what happens over time: write it inside `Steps`, or declare it under `resources:`");
-                        faults.push(*traced(diagnostic, &flat.trace));
-                    }
-                }
-            }
-        }
-        let steps = writers.keys().next().copied();
-        if writers.len() > 1 {
-            let message = format!("the state `{}` is written in {} different `Steps`", object.path, writers.len());
-            let mut diagnostic = Diagnostic::error(Code::STATE, message);
-            for (steps, at) in &writers {
-                diagnostic = diagnostic.at(*at, format!("written in `{}`", lowering.steps[*steps].path));
-            }
-            let diagnostic = diagnostic.see(object.span, "declared as state");
-            faults.push(diagnostic.hint("state belongs to one `Steps`: give the other one its own"));
-        }
-        let read = lowering
-            .flat
-            .iter()
-            .flat_map(|f| &f.pass.accesses)
-            .any(|a| a.read && lowering.object_ids(a.object).contains(&id));
-        if steps.is_none() && read && faults.is_empty() {
-            let message = format!("nothing writes the state `{}`", object.path);
-            let diagnostic = fault(Code::NEVER_WRITTEN, message, object.span, "declared as state")
-                .hint("write it inside `Steps(rate: ..., passes: [...])`");
-            faults.push(diagnostic);
-        }
-        if let Some(steps) = steps {
-            lowering.objects[id].object.origin = Origin::State(steps);
-        }
     }
     faults
 }

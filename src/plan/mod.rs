@@ -14,13 +14,14 @@ pub mod meshes;
 pub mod model;
 pub mod needs;
 pub mod print;
+mod state;
 mod units;
 
 use std::collections::{BTreeMap, BTreeSet};
 
-pub(crate) use lower::stand_in_texture;
 use lower::{Entity, Lowering};
-use model::{Causes, Object, ObjectId, ObjectRef, Output, Pass, Plan, Request};
+pub(crate) use lower::{input_fields, stand_in_texture};
+use model::{Object, ObjectId, ObjectRef, Output, Pass, Plan, Request};
 
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::graph::model::{Graph, InputKind};
@@ -72,7 +73,7 @@ fn plan(program: &Program, request: &Request, stand_in: bool) -> Result<Plan, Di
     let argument_slots = insert::insert(&mut lowering);
     insert::cover_steps(&mut lowering);
     let units = units::units(&mut lowering);
-    seal_steps(&mut lowering, &units);
+    state::seal(&mut lowering, &units);
     if lowering.diagnostics.has_errors() {
         return Err(lowering.diagnostics);
     }
@@ -297,49 +298,6 @@ fn attached(pass: &Pass) -> Vec<ObjectRef> {
     let model::PassKind::Draw(draw) = &pass.kind else { return Vec::new() };
     let resolved = draw.color.iter().filter(|target| target.resolve.is_some()).map(|target| target.view.object);
     resolved.chain(draw.depth.iter().map(|depth| depth.view.object)).collect()
-}
-
-/// Which state belongs to which steps, when it starts anew, and the rule that steps at a rate do
-/// not see the camera.
-fn seal_steps(lowering: &mut Lowering<'_>, units: &[model::Unit]) {
-    for index in 0..lowering.steps.len() {
-        let state: Vec<ObjectId> = (0..lowering.objects.len())
-            .filter(|id| lowering.objects[*id].object.origin == model::Origin::State(index))
-            .collect();
-        let mut text = lowering.steps[index].path.clone();
-        for id in &state {
-            let object = &lowering.objects[*id].object;
-            text.push_str(&format!("|{}:{:?}", object.path, object.kind));
-        }
-        lowering.steps[index].key = twox_hash::XxHash3_128::oneshot(text.as_bytes());
-        lowering.steps[index].state = state;
-        let cameras: BTreeSet<String> = lowering
-            .program
-            .root
-            .inputs
-            .iter()
-            .filter(|i| matches!(i.kind, InputKind::Camera))
-            .map(|i| i.name.value.clone())
-            .collect();
-        if lowering.steps[index].rate.is_none() {
-            continue;
-        }
-        let sees = |causes: &Causes| {
-            causes.live.iter().any(|live| live.split_once('.').is_some_and(|(input, _)| cameras.contains(input)))
-        };
-        let fault = lowering.flat.iter().find(|f| f.pass.steps == Some(index) && sees(&units[f.pass.unit].causes));
-        if let Some(flat) = fault {
-            let message = format!("`{}` runs at a rate and depends on the camera", flat.pass.path);
-            let mut diagnostic = Diagnostic::error(Code::STATE, message).at(flat.word, "this pass");
-            if let Some(by) = lowering.flat.iter().find(|other| sees(&other.causes)).filter(|by| by.word != flat.word) {
-                diagnostic = diagnostic.see(by.word, "reads the camera, and what it makes comes there");
-            }
-            let diagnostic = diagnostic
-                .hint("what happens over time is the same from every viewpoint; say `rate: PerFrame` if it is not");
-            let diagnostic = *lower::traced(diagnostic, &flat.trace);
-            lowering.diagnostics.push(diagnostic);
-        }
-    }
 }
 
 /// What the order of atomics reaches: a pass that uses an atomic's old value, and all that read

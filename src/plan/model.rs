@@ -168,7 +168,9 @@ pub struct Steps {
     /// Hz; absent: once a frame.
     pub rate: Option<f64>,
     pub passes: Range<usize>,
-    /// Changes when all its state has to start anew.
+    /// The value of the graph's own key.
+    pub asked: Option<Value>,
+    /// Changes when all its state has to start anew: with `asked`, or a declaration.
     pub key: u128,
     pub state: Vec<ObjectId>,
 }

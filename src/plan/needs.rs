@@ -6,7 +6,7 @@ use wgpu_types::{Features, Limits, ShaderStages};
 
 use super::lower::{Lowering, fault, traced};
 use super::model::{Bound, Needs, Object, ObjectKind, Pass, PassKind, ShaderUse};
-use crate::diagnostic::{Code, Diagnostic, Diagnostics, Span};
+use crate::diagnostic::{Code, Diagnostics, Span};
 use crate::shader::reflect::Stage;
 
 /// The largest amount of each thing, and the place that asks for it.
@@ -49,7 +49,11 @@ pub(super) fn needs(lowering: &Lowering<'_>, objects: &[Object]) -> (Needs, Diag
     for (name, _) in lacking.iter_names() {
         let message =
             format!("the graph needs the device feature `{}`, which the device lacks", name.to_ascii_lowercase());
-        found.push(Diagnostic::error(Code::DEVICE_LIMIT, message).at(lowering.program.root.span, "this graph"));
+        let root = lowering.program.root.span;
+        found.push(match lowering.feature_places.get(name) {
+            Some((at, label, trace)) => *traced(fault(Code::DEVICE_LIMIT, message, *at, *label), trace),
+            None => fault(Code::DEVICE_LIMIT, message, root, "this graph"),
+        });
     }
     (Needs { features: lowering.features, limits }, found)
 }
@@ -144,27 +148,47 @@ fn of_bindings(
     }
 }
 
-/// A limit by its name in WebGPU.
-pub fn limit(limits: &Limits, name: &str) -> u64 {
-    match name {
-        "max_texture_dimension_2d" => u64::from(limits.max_texture_dimension_2d),
-        "max_texture_dimension_3d" => u64::from(limits.max_texture_dimension_3d),
-        "max_texture_array_layers" => u64::from(limits.max_texture_array_layers),
-        "max_buffer_size" => limits.max_buffer_size,
-        "max_color_attachments" => u64::from(limits.max_color_attachments),
-        "max_color_attachment_bytes_per_sample" => u64::from(limits.max_color_attachment_bytes_per_sample),
-        "max_compute_invocations_per_workgroup" => u64::from(limits.max_compute_invocations_per_workgroup),
-        "max_compute_workgroup_size_x" => u64::from(limits.max_compute_workgroup_size_x),
-        "max_compute_workgroup_size_y" => u64::from(limits.max_compute_workgroup_size_y),
-        "max_compute_workgroup_size_z" => u64::from(limits.max_compute_workgroup_size_z),
-        "max_compute_workgroup_storage_size" => u64::from(limits.max_compute_workgroup_storage_size),
-        "max_uniform_buffers_per_shader_stage" => u64::from(limits.max_uniform_buffers_per_shader_stage),
-        "max_uniform_buffer_binding_size" => limits.max_uniform_buffer_binding_size,
-        "max_storage_buffers_per_shader_stage" => u64::from(limits.max_storage_buffers_per_shader_stage),
-        "max_storage_buffer_binding_size" => limits.max_storage_buffer_binding_size,
-        "max_sampled_textures_per_shader_stage" => u64::from(limits.max_sampled_textures_per_shader_stage),
-        "max_storage_textures_per_shader_stage" => u64::from(limits.max_storage_textures_per_shader_stage),
-        "max_samplers_per_shader_stage" => u64::from(limits.max_samplers_per_shader_stage),
-        _ => u64::MAX,
-    }
+macro_rules! limits {
+    ($($name:ident),* $(,)?) => {
+        /// Names of the limits that plans are measured by.
+        pub const LIMITS: &[&str] = &[$(stringify!($name)),*];
+
+        /// A limit by its name in WebGPU.
+        pub fn limit(limits: &Limits, name: &str) -> u64 {
+            match name {
+                $(stringify!($name) => limits.$name.into(),)*
+                _ => u64::MAX,
+            }
+        }
+
+        /// Sets a limit, to what fits in it. Tells whether there is one of this name.
+        pub fn set_limit(limits: &mut Limits, name: &str, value: u64) -> bool {
+            match name {
+                $(stringify!($name) => limits.$name = value.try_into().unwrap_or(u32::MAX.into()),)*
+                _ => return false,
+            }
+            true
+        }
+    };
+}
+
+limits! {
+    max_texture_dimension_2d,
+    max_texture_dimension_3d,
+    max_texture_array_layers,
+    max_buffer_size,
+    max_color_attachments,
+    max_color_attachment_bytes_per_sample,
+    max_compute_invocations_per_workgroup,
+    max_compute_workgroup_size_x,
+    max_compute_workgroup_size_y,
+    max_compute_workgroup_size_z,
+    max_compute_workgroup_storage_size,
+    max_uniform_buffers_per_shader_stage,
+    max_uniform_buffer_binding_size,
+    max_storage_buffers_per_shader_stage,
+    max_storage_buffer_binding_size,
+    max_sampled_textures_per_shader_stage,
+    max_storage_textures_per_shader_stage,
+    max_samplers_per_shader_stage,
 }

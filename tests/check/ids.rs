@@ -7,10 +7,6 @@ use meniscus::diagnostic::{Code, explain, explained};
 
 use crate::golden;
 
-/// Ids that no file of a program can bring up by itself: they need a device, an asset, a command line or a place
-/// to write to. Each has tests of its own where that is at hand.
-const NOT_FROM_FILES: &[&str] = &["asset", "asset-note", "usage", "overflow", "device", "output"];
-
 #[test]
 fn every_id_has_a_section() {
     for code in Code::ALL {
@@ -43,8 +39,7 @@ fn every_id_is_shown_by_a_golden() {
     for code in Code::ALL {
         let id = code.as_str();
         let is_shown = shown.contains(&format!("[{id}]"));
-        let is_exempt = NOT_FROM_FILES.contains(&id);
-        assert!(is_shown || is_exempt, "no golden under tests/ shows `{id}`");
+        assert!(is_shown, "no golden under tests/ shows `{id}`");
     }
 }
 

@@ -97,7 +97,14 @@ var<storage, read_write> out: array<f32>;
     let bound = [("now", Bound::Uniform { block: 0 }), ("old", ring(0, false)), ("fresh", ring(1, true))];
     let step = plan.compute("sim/step", STEP, &bound, Dispatch::Groups([1, 1, 1]));
     plan.passes[step].steps = Some(0);
-    plan.steps.push(Steps { path: "sim".into(), rate: Some(4.0), passes: 0..1, key: 1, state: vec![a, b] });
+    plan.steps.push(Steps {
+        path: "sim".into(),
+        rate: Some(4.0),
+        passes: 0..1,
+        asked: None,
+        key: 1,
+        state: vec![a, b],
+    });
     let bound = [("now", Bound::Uniform { block: 1 }), ("newest", ring(0, false)), ("out", storage(out))];
     plan.compute("copy", COPY, &bound, Dispatch::Groups([1, 1, 1]));
     (plan, out)

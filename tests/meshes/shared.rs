@@ -20,11 +20,17 @@ fn folder() -> Option<PathBuf> {
 }
 
 fn load(path: &Path) -> Model {
+    load_with(path, str::is_empty)
+}
+
+/// Loads a file that may be read with findings that are expected.
+fn load_with(path: &Path, expected: impl Fn(&str) -> bool) -> Model {
     let bytes: Arc<[u8]> = std::fs::read(path).unwrap_or_else(|e| panic!("{}: {e}", path.display())).into();
     let bundle = meshes::gather(&DiskFiles, path, bytes);
     let shown = path.display().to_string();
     let model = meshes::read(&bundle).unwrap_or_else(|found| panic!("{}", said(&found, &shown)));
-    assert_eq!(said(&model.diagnostics, &shown), "");
+    let found = said(&model.diagnostics, &shown);
+    assert!(expected(&found), "{found}");
     model
 }
 
@@ -215,4 +221,46 @@ fn the_animated_box_is_where_its_file_says() {
     expect(2.5, 2.52, std::f32::consts::PI);
     expect(100.0, 0.0, std::f32::consts::PI);
     assert!(model.nodes.iter().all(|node| matches!(node.local, Local::Parts { .. })));
+}
+
+#[test]
+fn obj_files_are_what_another_reader_finds() {
+    let Some(folder) = folder() else { return };
+    for (name, triangles) in [("spot", 5856), ("splishsplash_sphere", 760), ("splishsplash_torus", 0)] {
+        let path = folder.join(format!("assets/obj/{name}.obj"));
+        let model = load_with(&path, |found| found.lines().all(|line| line.contains("mtllib")));
+        let (others, _) =
+            tobj::load_obj(&path, &tobj::LoadOptions { triangulate: true, ..tobj::LoadOptions::default() }).unwrap();
+        let ours = &model.meshes[0].primitives[0];
+        let positions: Vec<[f32; 3]> = others
+            .iter()
+            .flat_map(|other| {
+                other.mesh.indices.iter().map(|i| *other.mesh.positions.as_chunks().0.get(*i as usize).unwrap())
+            })
+            .collect();
+        assert!(at_corners(&ours.positions, &ours.indices) == positions, "{name}: positions");
+        assert!(triangles == 0 || ours.indices.len() == triangles * 3, "{name}: {}", ours.indices.len());
+        let uvs: Vec<[f32; 2]> = others
+            .iter()
+            .filter(|other| !other.mesh.texcoord_indices.is_empty())
+            .flat_map(|other| {
+                let uv = other.mesh.texcoords.as_chunks::<2>().0;
+                other.mesh.texcoord_indices.iter().map(|i| [uv[*i as usize][0], 1.0 - uv[*i as usize][1]])
+            })
+            .collect();
+        assert!(uvs.is_empty() || at_corners(&ours.uv0, &ours.indices) == uvs, "{name}: uv0");
+        outwards(name, ours);
+    }
+}
+
+/// The normals of a closed mesh point away from what it encloses, and lean to their triangles.
+fn outwards(name: &str, primitive: &Primitive) {
+    let mut volume = 0.0;
+    for triangle in primitive.indices.as_chunks::<3>().0 {
+        let [a, b, c] = triangle.map(|index| Vec3::from_array(primitive.positions[index as usize]));
+        volume += a.dot(b.cross(c));
+        let normals: Vec3 = triangle.iter().map(|index| Vec3::from_array(primitive.normals[*index as usize])).sum();
+        assert!((b - a).cross(c - a).dot(normals) >= 0.0, "{name}: {triangle:?}");
+    }
+    assert!(volume > 0.0, "{name}");
 }

@@ -280,7 +280,7 @@ fn branch(d: &mut Decoder<'_>, tag: &Tagged) -> Option<If> {
 }
 
 fn steps(d: &mut Decoder<'_>, tag: &Tagged) -> Option<Steps> {
-    let fields = d.body_fields(tag, "`Steps`", &["rate", "passes", "name"])?;
+    let fields = d.body_fields(tag, "`Steps`", &["rate", "key", "passes", "name"])?;
     let name = label(d, &fields);
     let rate = fields.require(d, "rate").and_then(|node| match node.as_word() {
         Some(word) if word.value == "PerFrame" => Some(None),
@@ -290,6 +290,7 @@ fn steps(d: &mut Decoder<'_>, tag: &Tagged) -> Option<Steps> {
         }
         None => expr(d, node, "`rate` of `Steps`").map(Some),
     });
+    let key = fields.get("key").and_then(|node| expr(d, node, "`key` of `Steps`"));
     let passes = fields.require(d, "passes").map(|node| list(d, node, "`passes` of `Steps`")).unwrap_or_default();
-    Some(Steps { name, rate: rate?, passes })
+    Some(Steps { name, rate: rate?, key, passes })
 }

@@ -60,7 +60,7 @@ impl Lowering<'_> {
         let constants = self.constants(s, stages, bind, draft);
         self.check_bind_names(s, stages, bind);
         for (_, entry) in &stages.entries {
-            self.features |= entry.features;
+            self.need(s, entry.features, entry.span, "this shader needs it");
             draft.unordered |= entry.uses.iter().any(|u| u.atomic_result);
         }
         let entry = |stage| stages.entries.iter().find(|(s, _)| *s == stage).map(|(_, e)| e.name.clone());

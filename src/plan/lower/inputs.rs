@@ -342,7 +342,7 @@ impl Lowering<'_> {
 }
 
 /// The fields of an input of a kind: what follows its name and a dot.
-pub(super) fn input_fields(kind: &InputKind) -> impl Iterator<Item = &str> {
+pub(crate) fn input_fields(kind: &InputKind) -> impl Iterator<Item = &str> {
     let buffers: &[(&str, MeshBuffer)] = match kind {
         InputKind::Meshes { .. } => &MeshBuffer::NAMED,
         _ => &[],

@@ -26,6 +26,7 @@ mod view;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::sync::Arc;
 
+pub(crate) use inputs::input_fields;
 pub(super) use names::{Entity, Local, list};
 pub(crate) use vars::stand_in_texture;
 
@@ -42,6 +43,9 @@ pub(super) type VarId = usize;
 
 /// Without a `Result`, a fault is pushed to [`Lowering::diagnostics`] and the thing is left out.
 pub(super) type Result<T> = std::result::Result<T, Box<Diagnostic>>;
+
+/// What needs a feature of the device: a place, its label, and where its part is used.
+pub(super) type FeaturePlace = (Span, &'static str, Vec<Span>);
 
 /// What a flat pass is before units are known.
 #[derive(Clone, Debug)]
@@ -158,6 +162,8 @@ pub(super) struct Lowering<'a> {
     pub swapped: Vec<BTreeSet<ObjectId>>,
     pub params: BTreeMap<String, model::Param>,
     pub features: wgpu_types::Features,
+    /// What needs each feature first, by its name.
+    pub feature_places: BTreeMap<&'static str, FeaturePlace>,
     pub diagnostics: Diagnostics,
     /// Declarations that something asked for, for "unused".
     pub used: BTreeSet<Span>,
@@ -198,6 +204,7 @@ impl<'a> Lowering<'a> {
             swapped: Vec::new(),
             params: BTreeMap::new(),
             features: wgpu_types::Features::empty(),
+            feature_places: BTreeMap::new(),
             diagnostics: Diagnostics::new(),
             used: BTreeSet::new(),
             structure: Vec::new(),
@@ -231,6 +238,14 @@ impl<'a> Lowering<'a> {
                 None
             }
         }
+    }
+
+    /// Keeps that the plan needs features of the device, and what asked first.
+    pub(super) fn need(&mut self, s: ScopeId, features: wgpu_types::Features, at: Span, label: &'static str) {
+        for (name, _) in (features - self.features).iter_names() {
+            self.feature_places.entry(name).or_insert_with(|| (at, label, self.scopes[s].trace.clone()));
+        }
+        self.features |= features;
     }
 
     /// The object behind a reference at the start of a frame: what description it has.

@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, HashMap};
 use std::sync::Arc;
 
 use super::inputs::input_fields;
+use super::swaps::{extent, same_extent};
 use super::{LetState, Lowering, Result, Scalar, Scope, ScopeId, VarId, fault, traced};
 use crate::diagnostic::{Code, Diagnostic, Span};
 use crate::graph::expr::{Expr, ExprKind};
@@ -366,6 +367,32 @@ impl Lowering<'_> {
             scope.lets = vec![LetState::Waiting; scope.graph.lets.len()];
             // What the part's own parts were given may depend on it; they are entered anew in
             // program order, here only what is asked for before that is forgotten.
+            self.check_still_fits(child, used);
+        }
+    }
+
+    /// Resources have one size in a frame: what a part is given anew must not make them others.
+    fn check_still_fits(&mut self, s: ScopeId, used: &Use) {
+        let graph = self.scopes[s].graph.clone();
+        for (i, resource) in graph.resources.iter().enumerate() {
+            let Some(var) = self.scopes[s].resources[i].filter(|var| *var < self.vars.len()) else { continue };
+            let result = self.describe_anew(s, i);
+            let Some(now) = self.report(result) else { continue };
+            let before = self.vars[var].now;
+            if same_extent(&self.object(before).object.kind, &now) {
+                continue;
+            }
+            let name = &resource.name.value;
+            let message = format!("`{}.{name}` would have another size in each iteration", used.name.value);
+            let at = used.params.first().map_or(used.name.span, |(_, expr)| expr.span);
+            let diagnostic = fault(Code::BAD_PARAMETER, message, at, format!("now it is{}", extent(&now)))
+                .see(resource.name.span, format!("it was{}", extent(&self.object(before).object.kind)))
+                .hint("a resource has one size in a frame: give it the largest, and let what is given say how much of it counts")
+                .hint("or use the part once for each size, under names of their own");
+            let diagnostic = *traced(diagnostic, &self.scopes[s].trace);
+            if !self.diagnostics.iter().any(|known| known.message == diagnostic.message) {
+                self.diagnostics.push(diagnostic);
+            }
         }
     }
 }

@@ -28,11 +28,19 @@ impl Lowering<'_> {
             }
             None => None,
         };
+        let asked = match &steps.key {
+            Some(expr) => {
+                let (value, depends) = self.known(s, expr)?;
+                causes.add(&depends);
+                Some(value)
+            }
+            None => None,
+        };
         let name = steps.name.as_ref().map_or("steps", |n| n.value.as_str());
         let index = self.steps.len();
         let path = join(&self.scopes[s].path, name);
         let first = self.flat.len();
-        self.steps.push(Steps { path, rate, passes: first..first, key: 0, state: Vec::new() });
+        self.steps.push(Steps { path, rate, passes: first..first, asked, key: 0, state: Vec::new() });
         let before: Vec<ObjectRef> = self.vars.iter().map(|v| v.now).collect();
         self.in_steps = Some(index);
         causes.live.insert("step".to_owned());

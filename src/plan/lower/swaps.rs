@@ -51,15 +51,7 @@ impl Lowering<'_> {
     fn alike(&self, a: ObjectRef, b: ObjectRef) -> bool {
         let (a, b) = (self.object(a), self.object(b));
         let state = |o: &Origin| matches!(o, Origin::State(_));
-        let same = match (&a.object.kind, &b.object.kind) {
-            (ObjectKind::Texture(x), ObjectKind::Texture(y)) => {
-                (x.format, x.width, x.height, x.layers, x.is_3d, x.mips, x.samples)
-                    == (y.format, y.width, y.height, y.layers, y.is_3d, y.mips, y.samples)
-            }
-            (ObjectKind::Buffer(x), ObjectKind::Buffer(y)) => (x.items, x.counted) == (y.items, y.counted),
-            _ => false,
-        };
-        same && state(&a.object.origin) == state(&b.object.origin)
+        same_extent(&a.object.kind, &b.object.kind) && state(&a.object.origin) == state(&b.object.origin)
     }
 
     pub(super) fn extent_of(&self, object: ObjectRef) -> String {
@@ -99,5 +91,30 @@ impl Lowering<'_> {
             }
         }
         Ok(())
+    }
+}
+
+/// Whether two objects hold the same: what uses them does not count.
+pub(super) fn same_extent(a: &ObjectKind, b: &ObjectKind) -> bool {
+    match (a, b) {
+        (ObjectKind::Texture(x), ObjectKind::Texture(y)) => {
+            (x.format, x.width, x.height, x.layers, x.is_3d, x.mips, x.samples)
+                == (y.format, y.width, y.height, y.layers, y.is_3d, y.mips, y.samples)
+        }
+        (ObjectKind::Buffer(x), ObjectKind::Buffer(y)) => (x.items, x.counted) == (y.items, y.counted),
+        _ => false,
+    }
+}
+
+/// ` 64 x 64 texels, 3 layers, 1 mip`, ` 4 items`.
+pub(super) fn extent(kind: &ObjectKind) -> String {
+    match kind {
+        ObjectKind::Texture(t) => {
+            let layers =
+                if t.is_3d || t.layers > 1 { format!(", {}", amount(t.layers, "layer")) } else { String::new() };
+            let mips = if t.mips > 1 { format!(", {}", amount(t.mips, "mip")) } else { String::new() };
+            format!(" {} x {} texels{layers}{mips}", t.width, t.height)
+        }
+        ObjectKind::Buffer(b) => format!(" {}", amount(b.items, "item")),
     }
 }

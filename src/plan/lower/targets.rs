@@ -68,7 +68,7 @@ impl Lowering<'_> {
         let format = texture.format;
         let declared = self.object(view.object).object.span;
         if format == TextureFormat::Rg11b10Ufloat {
-            self.features |= Features::RG11B10UFLOAT_RENDERABLE;
+            self.need(s, Features::RG11B10UFLOAT_RENDERABLE, target.span, "a target of this format needs it");
         }
         if format.is_depth_stencil_format() || !format::is_renderable(format, self.features) {
             let message = format!("a texture of {} cannot be a colour target", format::name(format));
@@ -140,7 +140,7 @@ impl Lowering<'_> {
             return Ok(());
         }
         if format::is_float32(format) {
-            self.features |= Features::FLOAT32_BLENDABLE;
+            self.need(s, Features::FLOAT32_BLENDABLE, at, "blending 32-bit floats needs it");
             return Ok(());
         }
         let message = format!("a target of {} cannot blend", format::name(format));
@@ -266,7 +266,7 @@ impl Lowering<'_> {
         };
         self.texture_usage(view.object, TextureUsages::RENDER_ATTACHMENT);
         if format == TextureFormat::Depth32FloatStencil8 {
-            self.features |= Features::DEPTH32FLOAT_STENCIL8;
+            self.need(s, Features::DEPTH32FLOAT_STENCIL8, depth.span, "this format needs it");
         }
         let writes = depth.write || clear.is_some() || stencil.as_ref().is_some_and(Stencil::writes);
         let whole = clear.is_some();

@@ -42,7 +42,8 @@ impl Lowering<'_> {
                         .hint("use a nearest sampler or `textureLoad`");
                 return Err(traced(diagnostic, &self.scopes[s].trace));
             }
-            self.features |= Features::FLOAT32_FILTERABLE;
+            let at = place.wanted.global.span;
+            self.need(s, Features::FLOAT32_FILTERABLE, at, "sampling 32-bit floats with a linear sampler needs it");
         }
         self.texture_usage(object, TextureUsages::TEXTURE_BINDING);
         let auto = self.object(object).mips_auto && viewed.view.mips.len() > 1;
@@ -83,7 +84,8 @@ impl Lowering<'_> {
             && write
             && !matches!(format, TextureFormat::R32Float | TextureFormat::R32Uint | TextureFormat::R32Sint);
         if !storable.contains(TextureUsages::STORAGE_BINDING) || read_write {
-            self.features |= Features::TEXTURE_ADAPTER_SPECIFIC_FORMAT_FEATURES;
+            let (at, needed) = (place.wanted.global.span, Features::TEXTURE_ADAPTER_SPECIFIC_FORMAT_FEATURES);
+            self.need(s, needed, at, "storing to this format so needs it");
         }
         self.texture_usage(object, TextureUsages::STORAGE_BINDING);
         draft.accesses.push(self.access(place, &viewed.view, place.wanted.used, false));

@@ -8,7 +8,7 @@ use super::{Building, Lowering, Result, ScopeId, Var, VarId, fault, traced};
 use crate::diagnostic::{Code, Span};
 use crate::format::{self, TextureFormat};
 use crate::graph::expr::Expr;
-use crate::graph::model::{Mips, ResourceKind, Sp, ViewDimension};
+use crate::graph::model::{Mips, Node, NodeKind, ResourceKind, Sp, ViewDimension};
 use crate::graph::value::Value;
 use crate::plan::model::{Buffer, Causes, Object, ObjectKind, ObjectRef, Origin, Texture};
 
@@ -39,7 +39,7 @@ impl Lowering<'_> {
         // Marks it as being evaluated, to find circles.
         self.scopes[s].resources[i] = Some(VarId::MAX);
         self.evaluating.push((resource.name.span, resource.name.value.clone()));
-        let made = self.describe(s, &resource.kind, resource.name.span);
+        let made = self.describe_outside(s, &resource.kind, resource.name.span);
         self.evaluating.pop();
         self.scopes[s].resources[i] = None;
         let (kind, mips_auto, causes) = made?;
@@ -53,6 +53,27 @@ impl Lowering<'_> {
         let var = self.add_var(Building { object, layout: None, mips_auto, adapts: false, causes });
         self.scopes[s].resources[i] = Some(var);
         Ok(var)
+    }
+
+    /// What a resource would be with what its part is given now.
+    pub(super) fn describe_anew(&mut self, s: ScopeId, i: usize) -> Result<ObjectKind> {
+        let graph = self.scopes[s].graph.clone();
+        let resource = &graph.resources[i];
+        self.describe_outside(s, &resource.kind, resource.name.span).map(|(kind, ..)| kind)
+    }
+
+    /// Resources are the same in every iteration: they see no counter of a loop.
+    fn describe_outside(&mut self, s: ScopeId, kind: &ResourceKind, at: Span) -> Result<(ObjectKind, bool, Causes)> {
+        let counters = std::mem::take(&mut self.scopes[s].counters);
+        let made = self.describe(s, kind, at);
+        self.scopes[s].counters = counters;
+        made.map_err(|fault| {
+            let names = |name: &String| fault.message == format!("nothing is called `{name}`");
+            match counters_of(&self.scopes[s].graph.passes).iter().any(names) {
+                true => Box::new(fault.hint("a resource is the same in every iteration and sees no counter of a loop")),
+                false => fault,
+            }
+        })
     }
 
     fn describe(&mut self, s: ScopeId, kind: &ResourceKind, at: Span) -> Result<(ObjectKind, bool, Causes)> {
@@ -223,7 +244,7 @@ impl Lowering<'_> {
             "cannot have automatic mips"
         } else {
             if texture.format == TextureFormat::Depth32FloatStencil8 {
-                self.features |= Features::DEPTH32FLOAT_STENCIL8;
+                self.need(s, Features::DEPTH32FLOAT_STENCIL8, at, "this format needs it");
             }
             return Ok(());
         };
@@ -255,6 +276,20 @@ impl Lowering<'_> {
             ObjectKind::Buffer(_) => "a buffer".to_owned(),
         }
     }
+}
+
+/// Names of the counters of all loops.
+fn counters_of(nodes: &[Node]) -> Vec<String> {
+    let inside = |node: &Node| match &node.kind {
+        NodeKind::Repeat(repeat) => {
+            let own = repeat.index.iter().map(|index| index.value.clone());
+            own.chain(counters_of(&repeat.passes)).collect()
+        }
+        NodeKind::Steps(steps) => counters_of(&steps.passes),
+        NodeKind::If(choice) => [counters_of(&choice.then), counters_of(&choice.otherwise)].concat(),
+        _ => Vec::new(),
+    };
+    nodes.iter().flat_map(inside).collect()
 }
 
 pub(super) fn buffer(items: u64, counted: bool) -> ObjectKind {

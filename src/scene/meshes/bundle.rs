@@ -76,13 +76,12 @@ impl Bundle {
         XxHash3_128::oneshot(&all)
     }
 
-    /// Reads the file that `name` means, seen from `beside`, a folder that is given from this
-    /// file's own folder on.
-    pub(super) fn fetch(&mut self, files: &dyn Files, name: &str, beside: &Path) {
+    /// Reads the file that `name` means, seen from this file's own folder.
+    pub(super) fn fetch(&mut self, files: &dyn Files, name: &str) {
         if self.others.contains_key(name) {
             return;
         }
-        let found = match inside(name, beside) {
+        let found = match inside(name) {
             Err(refused) => Err(refused),
             Ok(inner) => {
                 let path = files::normalize(&self.path.parent().unwrap_or(Path::new("")).join(inner));
@@ -117,11 +116,11 @@ fn read(files: &dyn Files, path: &Path) -> io::Result<Arc<[u8]>> {
 
 /// The path that a reference means, from the folder of the file that is read on. A file that came
 /// from elsewhere must not make this program open what its sender could not have meant to send.
-fn inside(name: &str, beside: &Path) -> Result<PathBuf, Refused> {
+fn inside(name: &str) -> Result<PathBuf, Refused> {
     if name.split_once(':').is_some_and(|(scheme, _)| scheme.len() > 1 && scheme.chars().all(|c| c.is_alphanumeric())) {
         return Err(Refused::Remote);
     }
-    let inner = files::normalize(&beside.join(name.replace('\\', "/")));
+    let inner = files::normalize(Path::new(&name.replace('\\', "/")));
     let stays = inner.components().all(|part| matches!(part, Component::Normal(_)));
     if stays && inner.components().next().is_some() { Ok(inner) } else { Err(Refused::Outside) }
 }
@@ -140,16 +139,16 @@ mod tests {
             .with("/etc/secret", "4");
         let mut bundle = Bundle::alone("a/b/thing.obj", Arc::from(*b"x"));
         for name in ["skin.png", "more\\deep.png", "gone.png", "../secret.png", "/etc/secret", "http://a/b.png", ""] {
-            bundle.fetch(&files, name, Path::new(""));
+            bundle.fetch(&files, name);
         }
-        bundle.fetch(&files, "../skin.png", Path::new("more"));
-        bundle.fetch(&files, "../../secret.png", Path::new("more"));
+        bundle.fetch(&files, "more/../skin.png");
+        bundle.fetch(&files, "more/../../secret.png");
         let found = |name: &str| bundle.others[name].as_ref().map(|bytes| bytes.to_vec());
         assert_eq!(found("skin.png"), Ok(b"1".to_vec()));
         assert_eq!(found("more\\deep.png"), Ok(b"2".to_vec()));
-        assert_eq!(found("../skin.png"), Ok(b"1".to_vec()));
+        assert_eq!(found("more/../skin.png"), Ok(b"1".to_vec()));
         assert_eq!(found("gone.png"), Err(&Refused::Missing));
-        for outside in ["../secret.png", "/etc/secret", "../../secret.png", ""] {
+        for outside in ["../secret.png", "/etc/secret", "more/../../secret.png", ""] {
             assert_eq!(found(outside), Err(&Refused::Outside), "{outside}");
         }
         assert_eq!(found("http://a/b.png"), Err(&Refused::Remote));

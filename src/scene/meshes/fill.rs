@@ -26,7 +26,6 @@ pub(super) enum Shading {
     /// Each triangle has its own.
     Flat,
     /// Triangles that share a vertex share its normal.
-    #[allow(dead_code, reason = "formats without normals come next")]
     Smooth,
 }
 

@@ -11,7 +11,9 @@ mod bundle;
 mod fill;
 mod gltf;
 mod model;
+mod obj;
 mod pictures;
+mod polygon;
 mod pose;
 mod report;
 mod tangents;
@@ -34,7 +36,8 @@ type Gatherer = fn(&mut Bundle, &dyn Files);
 type Reader = fn(&Bundle, &mut Report) -> Option<Model>;
 
 /// Ends of file names, who finds the files that such a file names, and who reads them.
-const READERS: &[(&str, Gatherer, Reader)] = &[("gltf", gltf::gather, gltf::read), ("glb", gltf::gather, gltf::read)];
+const READERS: &[(&str, Gatherer, Reader)] =
+    &[("gltf", gltf::gather, gltf::read), ("glb", gltf::gather, gltf::read), ("obj", obj::gather, obj::read)];
 
 fn reader_for(path: &Path) -> Option<(Gatherer, Reader)> {
     let end = path.extension()?.to_str()?;

@@ -25,6 +25,14 @@ pub struct Model {
     pub diagnostics: Diagnostics,
 }
 
+impl Model {
+    /// A model of formats that have no nodes.
+    pub(super) fn of_one_mesh(mesh: Mesh) -> Self {
+        let node = Node { mesh: Some(0), ..Node::default() };
+        Self { meshes: vec![mesh], nodes: vec![node], roots: vec![0], ..Self::default() }
+    }
+}
+
 /// What one node draws.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Mesh {
@@ -112,6 +120,13 @@ impl Default for Material {
             occlusion_texture: None,
             emissive_texture: None,
         }
+    }
+}
+
+impl Material {
+    /// Like plaster: what has no material in a file whose format knows none, or does not say.
+    pub fn plain() -> Self {
+        Self { base_color_factor: [0.8, 0.8, 0.8, 1.0], metallic_factor: 0.0, ..Self::default() }
     }
 }
 

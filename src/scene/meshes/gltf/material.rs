@@ -6,7 +6,7 @@ use super::accessor::Data;
 use super::container::{self, Address};
 use super::document::{self, TextureInfo};
 use crate::scene::image::Stored;
-use crate::scene::meshes::bundle::Bundle;
+use crate::scene::meshes::bundle::{Bundle, Refused};
 use crate::scene::meshes::model::{AlphaMode, Filter, Material, Sampler, TextureUse, UvTransform, Wrap};
 use crate::scene::meshes::pictures::Pictures;
 use crate::scene::meshes::report::{Report, shown};
@@ -149,10 +149,7 @@ impl Reader<'_> {
             self.report.error(user, format!("there is no image {index}"));
             return None;
         };
-        let place = match image.uri.as_deref().map(container::address) {
-            Some(Address::File(name)) => format!("image {index} ({})", shown(&name)),
-            _ => format!("image {index}"),
-        };
+        let place = format!("image {index}");
         let (data, bundle) = (self.data, self.bundle);
         let bytes = |report: &mut Report| bytes_of(image, data, bundle, &place, report);
         self.pictures.add(&index.to_string(), &place, self.report, bytes)
@@ -173,7 +170,8 @@ fn bytes_of<'a>(
             container::data(text).map(Cow::Owned).map_err(|message| lacks(report, message)).ok()
         }
         (None, Some(Address::File(name))) => {
-            bundle.other(&name).map(Cow::Borrowed).map_err(|why| lacks(report, why.to_string())).ok()
+            let gone = |why: &Refused| lacks(report, format!("{} {why}", shown(&name)));
+            bundle.other(&name).map(Cow::Borrowed).map_err(gone).ok()
         }
         (None, None) => {
             lacks(report, "it has neither `uri` nor `bufferView`".into());

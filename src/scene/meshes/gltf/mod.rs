@@ -11,8 +11,6 @@ mod material;
 mod nodes;
 mod primitive;
 
-use std::path::Path;
-
 use crate::files::Files;
 
 use super::bundle::Bundle;
@@ -40,7 +38,7 @@ pub(super) fn gather(bundle: &mut Bundle, files: &dyn Files) {
     let Ok(references) = serde_json::from_slice::<References>(json) else { return };
     for uri in references.buffers.iter().chain(&references.images).filter_map(|r| r.uri.as_deref()) {
         if let Address::File(name) = container::address(uri) {
-            bundle.fetch(files, &name, Path::new(""));
+            bundle.fetch(files, &name);
         }
     }
 }

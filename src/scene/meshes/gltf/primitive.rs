@@ -42,7 +42,7 @@ pub fn read(
     let left = indices.len() % 3;
     if left > 0 {
         let count = counted(left, "index", "indices");
-        report.warn(place, format!("{count} at the end make no triangle"));
+        report.warn(place, format!("{count} left over at the end"));
         indices.truncate(indices.len() - left);
     }
     let used = compact(&mut indices, positions.count);
