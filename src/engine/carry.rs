@@ -4,12 +4,13 @@
 use std::collections::HashMap;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use super::bind::{Fixed, stat_of};
+use super::bind::Fixed;
 use super::gpu::Gpu;
-use super::pool::Pool;
+use super::pool::{Pool, candidates};
 use super::prepare::Runner;
+use super::report::Report;
 use crate::plan::changes::Changes;
-use crate::plan::model::{Dispatch, Geometry, ObjectId, Origin, PassKind, Plan};
+use crate::plan::model::{Dispatch, Geometry, ObjectId, Origin, Pass, PassKind, Plan};
 
 /// Whose content an object has, for those that are not made by the runner's own passes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -85,8 +86,8 @@ pub(super) fn copy_answers(gpu: &Gpu, plan: &Plan, fixed: &Fixed, before: &Runne
             any = true;
         }
     }
-    for (path, stat) in self::stats(plan) {
-        if let Some(was) = stats.get(path) {
+    for (settle, stat) in self::stats(plan) {
+        if let Some(was) = stats.get(&settle) {
             encoder.copy_buffer_to_buffer(&before.fixed.stats, *was * 4, &fixed.stats, stat * 4, 4);
             any = true;
         }
@@ -109,10 +110,29 @@ fn slots(plan: &Plan) -> HashMap<&str, u32> {
     plan.passes.iter().filter_map(|pass| Some((pass.path.as_str(), slot(&pass.kind)?))).collect()
 }
 
-/// The place of each settling pass's raw count.
-fn stats(plan: &Plan) -> HashMap<&str, u64> {
-    let settles = plan.passes.iter().enumerate().filter(|(_, pass)| matches!(pass.kind, PassKind::Settle { .. }));
-    settles.map(|(index, pass)| (pass.path.as_str(), stat_of(plan, index) as u64)).collect()
+/// The place of each settling pass's raw count. One buffer may be settled more than once.
+fn stats(plan: &Plan) -> HashMap<(&str, usize), u64> {
+    let mut stats = HashMap::new();
+    let mut settled: HashMap<&str, usize> = HashMap::new();
+    for pass in plan.passes.iter().filter(|pass| matches!(pass.kind, PassKind::Settle { .. })) {
+        let times = settled.entry(&pass.path).or_default();
+        stats.insert((pass.path.as_str(), *times), stats.len() as u64);
+        *times += 1;
+    }
+    stats
+}
+
+/// What is last known of counts, for a frame in which nothing has to run.
+pub(super) fn last_report(plan: &Plan, before: &Runner) -> Option<Report> {
+    let counted = |pass: &Pass| match &pass.kind {
+        PassKind::Settle { counted, .. } => {
+            candidates(plan, *counted).first().map(|id| plan.objects[*id].path.as_str())
+        }
+        _ => None,
+    };
+    let mut last = before.last.clone()?;
+    last.counts.retain(|count| plan.passes.iter().filter_map(counted).any(|path| path == count.path));
+    Some(last)
 }
 
 impl Runner {
@@ -158,7 +178,7 @@ impl Runner {
 pub(super) fn writers(plan: &Plan) -> Vec<(ObjectId, usize)> {
     let written = plan.passes.iter().flat_map(|pass| pass.accesses.iter().filter(|a| a.write).map(|a| (pass.unit, a)));
     let mut writers: Vec<(ObjectId, usize)> = written
-        .flat_map(|(unit, access)| super::pool::candidates(plan, access.object).into_iter().map(move |id| (id, unit)))
+        .flat_map(|(unit, access)| candidates(plan, access.object).into_iter().map(move |id| (id, unit)))
         .collect();
     writers.sort_unstable();
     writers.dedup();

@@ -137,7 +137,7 @@ impl Engine {
             done,
             inputs_filled: false,
             loads_are_free: self.gpu.info().device_type == wgpu::DeviceType::Cpu,
-            last: previous.and_then(|p| p.last.clone()),
+            last: previous.and_then(|p| carry::last_report(&plan, p)),
             build: BuildReport {
                 pipelines_built: compiled.built,
                 pipelines_reused: compiled.reused,
