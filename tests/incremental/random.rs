@@ -171,7 +171,9 @@ fn expected(plan: &Plan, change: Change, report: &Report) -> Result<(), String> 
             Change::Eye => (causes.live.contains("camera.position"), None),
             Change::Picture => (causes.inputs.contains("picture"), input("picture")),
             Change::Given => (causes.inputs.contains("given"), input("given")),
-            Change::Times if causes.params.contains("times") => (true, None),
+            Change::Times if causes.params.contains("times") => {
+                (true, Some(Reason::Cause(Cause::Param("times".into()))))
+            }
             _ => continue,
         };
         let of_steps = plan.units[u].passes.iter().all(|p| plan.passes[*p].steps.is_some());
@@ -220,7 +222,7 @@ pub fn a_cause_that_was_dropped_is_caught(engine: &mut Engine) {
     for (what, alter) in drops {
         caught(engine, what, alter, Look::Pictures);
     }
-    // A parameter changes the pass that it is written into, which is seen too: only who ran tells.
+    // A parameter changes the pass that it is written into, which is seen too: only the reason tells.
     let without: Alter = |plan| plan.units.iter_mut().for_each(|u| _ = u.causes.params.remove("times"));
     caught(engine, "a unit without a parameter", without, Look::All);
 }
