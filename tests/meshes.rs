@@ -14,6 +14,8 @@ mod hostile;
 mod obj;
 #[path = "meshes/shared.rs"]
 mod shared;
+#[path = "meshes/surface.rs"]
+mod surface;
 #[path = "meshes/wrong.rs"]
 mod wrong;
 

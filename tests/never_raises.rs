@@ -15,6 +15,7 @@ use generate::{Generated, grow};
 use meniscus::diagnostic::{Diagnostics, Style, render_all};
 use meniscus::engine::{Engine, Frame, Policy, StepInfo};
 use meniscus::format::TextureFormat;
+use meniscus::graph::value::Value;
 use meniscus::plan::model::{Bound, ObjectKind, ObjectRef, PassKind, Plan};
 use wgpu_types::{BufferUsages, TextureUsages};
 
@@ -57,7 +58,7 @@ fn run(engine: &mut Engine, plan: Plan) -> Result<(), Diagnostics> {
     let mut runner = engine.prepare(plan, None).map_err(|refused| refused.diagnostics)?;
     for (number, steps) in [1, 3, 0].into_iter().enumerate() {
         let steps = [steps];
-        let live = |_: &str, _: Option<&StepInfo>| None;
+        let live = |name: &str, _: Option<&StepInfo>| (name == "camera.position").then(|| Value::vec([0.1, 0.2, 0.3]));
         let frame = Frame { time: 0.25, delta: 0.25, frame: number as u64, steps: &steps, live: &live, only: None };
         runner.run(engine, &frame)?;
         runner.finish(engine)?;

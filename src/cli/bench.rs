@@ -52,6 +52,7 @@ fn bench(args: &BenchArgs, sources: &mut Sources) -> Result<(Measured, Diagnosti
     let Some(content) = loaded.content else { return Err(notes) };
     let mut session = Session::new(opening.wait()?);
     let built = session.build(content)?;
+    session.run_all(true);
     notes.extend(built.diagnostics);
     let mut measured = Measured { frames: args.frames, ..Measured::default() };
     let mut index = BTreeMap::new();

@@ -76,15 +76,16 @@ impl Fixed {
                 mapped_at_creation: false,
             })
         };
-        let both = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST;
+        // Copied from where a plan comes after another.
+        let all = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::COPY_SRC;
         Self {
             samplers: plan.samplers.iter().map(|s| gpu.device().create_sampler(&convert::sampler(s))).collect(),
             arguments: buffer(
                 "arguments",
                 u64::from(plan.argument_slots.max(1)) * 32,
-                both | wgpu::BufferUsages::INDIRECT,
+                all | wgpu::BufferUsages::INDIRECT,
             ),
-            stats: buffer("counts", settles.max(1) * 4, both | wgpu::BufferUsages::COPY_SRC),
+            stats: buffer("counts", settles.max(1) * 4, all),
         }
     }
 }

@@ -183,6 +183,7 @@ impl Runner {
         let set = Set { textures, samplers: samplers.map_err(refused)?, of: materials, bytes };
         self.materials.sets.insert(input.to_owned(), Arc::new(set));
         self.forget_materials(input);
+        self.changes.note_input(input);
         Ok(())
     }
 }

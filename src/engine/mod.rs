@@ -8,6 +8,7 @@
 //! Outside this module the only wgpu types are those that embedders hand in and take out.
 
 mod bind;
+mod carry;
 mod clear;
 mod compile;
 mod convert;
@@ -38,5 +39,5 @@ pub use materials::{MaterialImage, MaterialSampler, MaterialSlots};
 pub use pool::Policy;
 pub use prepare::{Engine, Refused, Runner};
 pub use readback::TextureData;
-pub use report::{BuildReport, CountReport, PassReport, Report};
+pub use report::{BuildReport, CountReport, PassReport, Report, UnitReport};
 pub use run::{Frame, StepInfo};

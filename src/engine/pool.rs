@@ -47,6 +47,8 @@ struct Slot {
     label: String,
     origin: Origin,
     first: ObjectId,
+    /// How many objects it stands for.
+    members: usize,
     memory: Option<Memory>,
     /// It belongs to somebody else.
     foreign: bool,
@@ -110,12 +112,18 @@ impl Pool {
                 let joined = slots
                     .last_mut()
                     .filter(|slot| groups.iter().any(|g| g.objects.contains(&id) && g.objects.contains(&slot.first)));
-                if !joined.is_some_and(|slot| merge(&mut slot.description, &descriptions[id])) {
+                let joined = joined.is_some_and(|slot| {
+                    let fits = merge(&mut slot.description, &descriptions[id]);
+                    slot.members += usize::from(fits);
+                    fits
+                });
+                if !joined {
                     slots.push(Slot {
                         description: descriptions[id].clone(),
                         label: plan.objects[id].path.clone(),
                         origin: plan.objects[id].origin.clone(),
                         first: id,
+                        members: 1,
                         memory: None,
                         foreign: false,
                     });
@@ -159,6 +167,12 @@ impl Pool {
 
     pub fn handle(&self, object: ObjectId) -> Handle {
         self.of[object]
+    }
+
+    /// Whether an object's memory is that of other objects too, so that what it holds is there only
+    /// while it lives.
+    pub fn shares(&self, object: ObjectId) -> bool {
+        self.slots[self.of[object].0].members > 1
     }
 
     pub fn memory(&self, object: ObjectId) -> Option<&Memory> {

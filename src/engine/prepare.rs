@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use super::bind::{Fixed, references};
+use super::carry::{self, Carried, Content};
 use super::clear;
 use super::compile::Compiler;
 use super::convert;
@@ -22,6 +23,7 @@ use super::run::Variants;
 use super::timing::Timing;
 use super::uniform::Uniforms;
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
+use crate::plan::changes::Changes;
 use crate::plan::model::{Draw, ObjectRef, Origin, Pass, PassKind, Plan, ShaderUse};
 
 /// A device with the pipelines that were made on it.
@@ -54,6 +56,19 @@ pub struct Runner {
     /// Steps since the reset, of each `Steps`.
     pub(super) done: Vec<u64>,
     pub(super) inputs_filled: bool,
+    /// What changed since each unit ran.
+    pub(super) changes: Changes,
+    /// Of each object, whose content it has.
+    pub(super) sources: Vec<Content>,
+    /// Of each object, a number that is another whenever its content may be.
+    pub(super) stamps: Vec<u64>,
+    /// Each object that passes write, with the unit that does.
+    pub(super) writers: Vec<(usize, usize)>,
+    /// Which passes run in the frame at hand.
+    pub(super) chosen: Vec<bool>,
+    /// Whether passes run whose results are there already.
+    pub(super) runs_all: bool,
+    pub(super) policy: Policy,
     pub(super) loads_are_free: bool,
     pub(super) last: Option<Report>,
     build: BuildReport,
@@ -107,7 +122,18 @@ impl Engine {
         let draws_joined = leaders.iter().enumerate().filter(|(pass, leader)| pass != *leader).count();
         let (rotation, done) = progress(&plan, previous, &state_kept);
         let materials = Materials::new(&self.gpu, &plan, previous.map(|p| &p.materials));
+        let Carried { changes, sources, stamps } = carry::carry(&plan, &pool, previous);
+        if let Some(before) = previous {
+            carry::copy_answers(&self.gpu, &plan, &fixed, before);
+        }
         let mut runner = Runner {
+            changes,
+            sources,
+            stamps,
+            writers: carry::writers(&plan),
+            chosen: Vec::with_capacity(plan.passes.len()),
+            runs_all: previous.is_some_and(|p| p.runs_all),
+            policy: self.policy,
             pipelines,
             by_faces,
             materials,
@@ -119,7 +145,7 @@ impl Engine {
             done,
             inputs_filled: false,
             loads_are_free: self.gpu.info().device_type == wgpu::DeviceType::Cpu,
-            last: None,
+            last: previous.and_then(|p| carry::last_report(&plan, p)),
             build: BuildReport {
                 pipelines_built: compiled.built,
                 pipelines_reused: compiled.reused,
@@ -180,7 +206,19 @@ impl Runner {
         }
         self.rotation.fill(0);
         self.done.fill(0);
+        self.changes.note_reset();
         Ok(())
+    }
+
+    /// Whether all passes run in each frame, also those whose results are there already. Off at
+    /// first: a pass runs if something that it depends on has changed.
+    pub fn run_all(&mut self, on: bool) {
+        self.runs_all = on;
+    }
+
+    /// How many units have something to run for, besides what the next frame brings.
+    pub fn waiting(&self) -> usize {
+        self.changes.waiting()
     }
 
     /// Makes what passes bind, for the rotation at hand. Those that read inputs without memory

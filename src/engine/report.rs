@@ -2,6 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use crate::plan::changes::Reason;
+
 /// What a frame did.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Report {
@@ -19,8 +21,18 @@ pub struct Report {
     pub submissions: u32,
     /// Counted buffers that were settled. Empty until the GPU's answer is there.
     pub counts: Vec<CountReport>,
+    /// What each of the plan's units did, and why. Empty if the plan says nothing of units.
+    pub units: Vec<UnitReport>,
     /// Whether the GPU's answer (times, counts) is in it.
     pub complete: bool,
+}
+
+/// Whether passes that run or are skipped together ran.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct UnitReport {
+    pub ran: bool,
+    /// Why it ran; empty if it was skipped, since nothing that it depends on has changed.
+    pub why: Vec<Reason>,
 }
 
 #[derive(Clone, Debug, PartialEq)]

@@ -1,17 +1,19 @@
 //! Carrying out a frame: one encoder, passes in program order, `Steps` as often as asked.
 
 use std::collections::BTreeMap;
+use std::ops::Range;
 use std::time::Instant;
 
 use super::bind::{Bench, Variant, references};
 use super::encode::Recorder;
 use super::errors;
 use super::gpu::Gpu;
+use super::pool::Policy;
 use super::prepare::{Engine, Runner};
 use super::report::Report;
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::graph::value::Value;
-use crate::plan::model::{ObjectRef, Plan};
+use crate::plan::model::{ObjectRef, PassKind, Plan};
 
 /// What changes from frame to frame.
 #[derive(Clone, Copy)]
@@ -57,7 +59,8 @@ pub struct StepInfo {
 }
 
 impl Runner {
-    /// Runs a frame. Waits for nothing.
+    /// Runs what has to run for a frame; waits for nothing. If nothing has to, no command goes to
+    /// the device.
     ///
     /// # Errors
     /// If a live name has no value, the device refuses something, or it was lost. What is on
@@ -70,21 +73,56 @@ impl Runner {
         let steps = self.step_infos(frame);
         let live =
             |name: &str, step: Option<&StepInfo>| (frame.live)(name, step).or_else(|| own_value(frame, name, step));
+        self.notice(&|name| live(name, None));
+        let runs_any = self.changes.decide(frame.steps, self.runs_all, self.policy == Policy::Smallest);
+        self.timing.begin(gpu, &self.plan, frame.frame, runs(&self.plan, &steps));
+        self.timing.decided(self.changes.decision());
+        if !runs_any {
+            self.changes.done(&self.plan, frame.steps, frame.only);
+            self.timing.submitted(began.elapsed().as_secs_f64() * 1e3);
+            return Ok(self.report());
+        }
         self.uniforms.write_frame(gpu, &self.plan, &live)?;
         self.uniforms.stage_steps(gpu, &self.plan, &steps, &live)?;
-        self.timing.begin(gpu, &self.plan, frame.frame, runs(&self.plan, &steps));
         let rotation = self.rotation.clone();
         let done = self.done.clone();
-        if let Err(diagnostic) = self.encode(gpu, frame, &steps) {
+        let chosen = self.choose(frame.only);
+        let encoded = self.encode(gpu, &Frame { only: Some(&chosen), ..*frame }, &steps);
+        self.chosen = chosen;
+        if let Err(diagnostic) = encoded {
             (self.rotation, self.done) = (rotation, done);
+            self.changes.failed();
             return Err(diagnostic.into());
         }
         self.timing.submitted(began.elapsed().as_secs_f64() * 1e3);
+        self.stamp();
         match gpu.check() {
-            Ok(()) => Ok(self.timing.preliminary(&self.plan)),
-            Err(lost) if errors::is_device_gone(&lost) => Err(lost.into()),
-            Err(refused) => Err(self.blame(gpu).unwrap_or_else(|| refused.into())),
+            Ok(()) => {
+                self.changes.done(&self.plan, frame.steps, frame.only);
+                Ok(self.report())
+            }
+            Err(refused) => {
+                self.changes.failed();
+                let is_lost = errors::is_device_gone(&refused);
+                Err(self.blame(gpu).filter(|_| !is_lost).unwrap_or_else(|| refused.into()))
+            }
         }
+    }
+
+    /// Which passes run: of those that somebody chose, those that have to.
+    fn choose(&mut self, only: Option<&[bool]>) -> Vec<bool> {
+        let mut chosen = std::mem::take(&mut self.chosen);
+        chosen.clear();
+        chosen.extend(self.plan.passes.iter().enumerate().map(|(index, pass)| {
+            let is_left_out = only.is_some_and(|only| only.get(index) == Some(&false));
+            !is_left_out && (pass.steps.is_some() || self.changes.runs(pass.unit))
+        }));
+        chosen
+    }
+
+    /// What is known of the frame before the GPU answers.
+    fn report(&self) -> Report {
+        self.timing.preliminary(&self.plan, &self.changes)
     }
 
     /// Waits until the GPU is done and gives the last frame's report, with times and counts.
@@ -95,26 +133,38 @@ impl Runner {
         let gpu = engine.gpu();
         gpu.wait()?;
         self.timing.collect(&self.plan);
+        if self.timing.is_idle() {
+            return Ok(self.idle_report());
+        }
         if !self.timing.is_captured() {
             // All buffers were on their way when the frame was submitted; now they are back.
             let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
             self.timing.capture(gpu, &self.plan, &mut encoder, &self.fixed.stats);
             gpu.queue().submit([encoder.finish()]);
-            let now = self.timing.preliminary(&self.plan);
+            let now = self.report();
             self.timing.submitted(now.encode_ms + now.submit_ms);
             gpu.wait()?;
             self.timing.collect(&self.plan);
         }
-        let report = self.timing.take().or_else(|| self.last.clone());
+        let report = self.timing.take(&self.changes).or_else(|| self.last.clone());
         self.last.clone_from(&report);
-        Ok(report.unwrap_or_else(|| self.timing.preliminary(&self.plan)))
+        Ok(report.unwrap_or_else(|| self.report()))
+    }
+
+    /// The report of a frame for which nothing had to run: the counts are those of the frame that
+    /// made them.
+    fn idle_report(&mut self) -> Report {
+        let newest = self.timing.take(&self.changes);
+        self.last = newest.or(self.last.take());
+        let counts = self.last.as_ref().map(|last| last.counts.clone()).unwrap_or_default();
+        Report { counts, complete: true, ..self.report() }
     }
 
     /// The newest report whose times and counts have come, once each. Does not wait.
     pub fn poll(&mut self, engine: &Engine) -> Option<Report> {
         engine.gpu().poll();
         self.timing.collect(&self.plan);
-        let report = self.timing.take();
+        let report = self.timing.take(&self.changes);
         if report.is_some() {
             self.last.clone_from(&report);
         }
@@ -170,9 +220,7 @@ impl Runner {
 
     fn encode(&mut self, gpu: &Gpu, frame: &Frame<'_>, steps: &[StepInfo]) -> Result<(), Diagnostic> {
         let mut recorder = Recorder::new(gpu);
-        if self.timing.has_counts() {
-            recorder.encoder().clear_buffer(&self.fixed.stats, 0, None);
-        }
+        self.clear_counts(recorder.encoder(), frame.only);
         let mut staged = 0;
         let mut at = 0;
         while at < self.plan.passes.len() {
@@ -194,6 +242,23 @@ impl Runner {
         self.timing.capture(gpu, &self.plan, recorder.encoder(), &self.fixed.stats);
         self.timing.handed_over(recorder.submit(gpu));
         Ok(())
+    }
+
+    /// Clears the counts of the settling passes that run. Others keep what they counted.
+    fn clear_counts(&self, encoder: &mut wgpu::CommandEncoder, chosen: Option<&[bool]>) {
+        let settles = self.plan.passes.iter().enumerate().filter(|(_, p)| matches!(p.kind, PassKind::Settle { .. }));
+        let mut run = 0..0;
+        for (stat, (index, _)) in (0..).zip(settles) {
+            if chosen.is_some_and(|chosen| chosen.get(index) == Some(&false)) {
+                continue;
+            }
+            if run.end != stat {
+                clear_words(encoder, &self.fixed.stats, &run);
+                run.start = stat;
+            }
+            run.end = stat + 1;
+        }
+        clear_words(encoder, &self.fixed.stats, &run);
     }
 
     /// Makes what the pass needs for the current rotation, if it is not there.
@@ -252,6 +317,12 @@ impl Runner {
 
 /// By key of [`Runner::rotation_key`].
 pub(super) type Variants = BTreeMap<usize, Variant>;
+
+fn clear_words(encoder: &mut wgpu::CommandEncoder, buffer: &wgpu::Buffer, words: &Range<u64>) {
+    if !words.is_empty() {
+        encoder.clear_buffer(buffer, words.start * 4, Some((words.end - words.start) * 4));
+    }
+}
 
 /// How many runs of passes a frame has, at most.
 fn runs(plan: &Plan, steps: &[StepInfo]) -> u32 {

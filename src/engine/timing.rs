@@ -6,7 +6,8 @@ use std::sync::atomic::{AtomicU8, Ordering};
 use super::bind::stat_of;
 use super::encode::Begun;
 use super::gpu::Gpu;
-use super::report::{CountReport, PassReport, Report};
+use super::report::{CountReport, PassReport, Report, UnitReport};
+use crate::plan::changes::{Changes, Decision};
 use crate::plan::model::{ObjectKind, Origin, PassKind, Plan};
 
 /// Frames whose answers may be on their way at once.
@@ -40,6 +41,8 @@ struct Frame {
     with: Vec<(usize, usize)>,
     /// How often each pass ran.
     runs: Vec<u32>,
+    /// Which units ran, and why.
+    decision: Decision,
 }
 
 #[derive(Debug)]
@@ -60,7 +63,7 @@ pub(super) struct Timing {
     now: Frame,
     /// The slot that the current frame's answer goes to.
     captured: Option<usize>,
-    latest: Option<(u64, Report)>,
+    latest: Option<(u64, Report, Decision)>,
 }
 
 impl Timing {
@@ -130,6 +133,7 @@ impl Timing {
         self.now.with.clear();
         self.now.runs.clear();
         self.now.runs.resize(plan.passes.len(), 0);
+        self.now.begun = Begun::default();
         self.captured = None;
     }
 
@@ -216,11 +220,6 @@ impl Timing {
         }
     }
 
-    /// Whether any pass settles a count.
-    pub fn has_counts(&self) -> bool {
-        self.stats_bytes > 0
-    }
-
     /// Whether what is no pass can be timed.
     pub fn times_encoders(&self) -> bool {
         self.in_encoders
@@ -254,6 +253,11 @@ impl Timing {
         self.captured = Some(at);
     }
 
+    /// Whether nothing ran in the current frame.
+    pub fn is_idle(&self) -> bool {
+        self.now.runs.iter().all(|runs| *runs == 0)
+    }
+
     pub fn is_captured(&self) -> bool {
         self.captured.is_some()
     }
@@ -283,8 +287,8 @@ impl Timing {
                 READY => {
                     if let Ok(view) = slot.buffer.get_mapped_range(..) {
                         let report = self.read(plan, &slot.frame, &view);
-                        if self.latest.as_ref().is_none_or(|(sequence, _)| *sequence < slot.frame.sequence) {
-                            self.latest = Some((slot.frame.sequence, report));
+                        if self.latest.as_ref().is_none_or(|(sequence, ..)| *sequence < slot.frame.sequence) {
+                            self.latest = Some((slot.frame.sequence, report, slot.frame.decision.clone()));
                         }
                     }
                     slot.buffer.unmap();
@@ -297,13 +301,20 @@ impl Timing {
     }
 
     /// The newest complete report, once.
-    pub fn take(&mut self) -> Option<Report> {
-        self.latest.take().map(|(_, report)| report)
+    pub fn take(&mut self, changes: &Changes) -> Option<Report> {
+        let (_, mut report, decision) = self.latest.take()?;
+        report.units = units(changes, &decision);
+        Some(report)
     }
 
     /// What is known of the current frame before the GPU answers.
-    pub fn preliminary(&self, plan: &Plan) -> Report {
-        report(plan, &self.now)
+    pub fn preliminary(&self, plan: &Plan, changes: &Changes) -> Report {
+        Report { units: units(changes, &self.now.decision), ..report(plan, &self.now) }
+    }
+
+    /// Notes which units run in the current frame.
+    pub fn decided(&mut self, decision: &Decision) {
+        self.now.decision.clone_from(decision);
     }
 
     fn read(&self, plan: &Plan, frame: &Frame, bytes: &[u8]) -> Report {
@@ -340,8 +351,14 @@ fn report(plan: &Plan, frame: &Frame) -> Report {
         render_passes: frame.begun.render_passes,
         submissions: frame.begun.submissions,
         counts: Vec::new(),
+        units: Vec::new(),
         complete: false,
     }
+}
+
+fn units(changes: &Changes, decision: &Decision) -> Vec<UnitReport> {
+    let unit = |unit| UnitReport { ran: decision.runs(unit) == Some(true), why: changes.why(decision, unit) };
+    (0..decision.len()).map(unit).collect()
 }
 
 /// One entry for each counted buffer, with the most that any of its settling passes saw.
@@ -352,7 +369,8 @@ fn counts(plan: &Plan, frame: &Frame, stats: &[u8]) -> Vec<CountReport> {
         _ => None,
     });
     for ((index, pass, counted), word) in settles.zip(stats.chunks_exact(4)) {
-        if frame.runs[index] == 0 {
+        // Outside of steps, what a settling pass counted is there until it runs again.
+        if frame.runs[index] == 0 && pass.steps.is_some() {
             continue;
         }
         let raw = u32::from_le_bytes(std::array::from_fn(|i| word[i]));

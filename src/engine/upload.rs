@@ -1,6 +1,7 @@
 //! Filling inputs: bytes from the host, or what another runner holds.
 
 use super::bind::resolve;
+use super::carry::Content;
 use super::pool::Memory;
 use super::prepare::{Engine, Runner};
 use super::texel;
@@ -30,6 +31,7 @@ impl Runner {
             word[..bytes.len() - whole].copy_from_slice(&bytes[whole..]);
             engine.gpu().queue().write_buffer(buffer, whole as u64, &word);
         }
+        self.note_content(object, Content::Own);
         Ok(())
     }
 
@@ -66,6 +68,7 @@ impl Runner {
             wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(row as u32), rows_per_image: Some(height) },
             wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
         );
+        self.note_content(object, Content::Own);
         Ok(())
     }
 
@@ -79,23 +82,58 @@ impl Runner {
         let Some(memory) = from.pool.memory(id) else {
             return Err(self.unfit(object, &format!("cannot take `{}`, which is empty", from.plan.objects[id].path)));
         };
-        self.share_memory(object, memory.clone())
+        self.share_memory(object, memory.clone(), Content::Version(from.stamps[id]))
     }
 
-    /// Makes an embedder's texture this runner's input, without a copy.
+    /// Makes an embedder's texture this runner's input, without a copy. It counts as changed in
+    /// every frame; see [`Runner::share_texture_version`].
     ///
     /// # Errors
     /// If its format, size, mips or layers are not those that the plan was made for.
     pub fn share_texture(&mut self, object: ObjectId, texture: &wgpu::Texture) -> Result<(), Diagnostic> {
-        self.share_memory(object, Memory::Texture(texture.clone()))
+        self.share_memory(object, Memory::Texture(texture.clone()), Content::Unversioned)
     }
 
-    /// Makes an embedder's buffer this runner's input, without a copy.
+    /// The same for a texture that has changed only if the version is another than last time.
+    ///
+    /// # Errors
+    /// As [`Runner::share_texture`].
+    pub fn share_texture_version(
+        &mut self,
+        object: ObjectId,
+        texture: &wgpu::Texture,
+        version: u64,
+    ) -> Result<(), Diagnostic> {
+        self.share_memory(object, Memory::Texture(texture.clone()), Content::Version(version))
+    }
+
+    /// Makes an embedder's buffer this runner's input, without a copy. It counts as changed in
+    /// every frame; see [`Runner::share_buffer_version`].
     ///
     /// # Errors
     /// If it is smaller than the plan was made for.
     pub fn share_buffer(&mut self, object: ObjectId, buffer: &wgpu::Buffer) -> Result<(), Diagnostic> {
-        self.share_memory(object, Memory::Buffer(buffer.clone()))
+        self.share_memory(object, Memory::Buffer(buffer.clone()), Content::Unversioned)
+    }
+
+    /// The same for a buffer that has changed only if the version is another than last time.
+    ///
+    /// # Errors
+    /// As [`Runner::share_buffer`].
+    pub fn share_buffer_version(
+        &mut self,
+        object: ObjectId,
+        buffer: &wgpu::Buffer,
+        version: u64,
+    ) -> Result<(), Diagnostic> {
+        self.share_memory(object, Memory::Buffer(buffer.clone()), Content::Version(version))
+    }
+
+    /// Tells that somebody wrote to an object's memory by other ways than this runner's: what
+    /// depends on it runs in the next frame.
+    pub fn mark_changed(&mut self, object: ObjectId) {
+        let source = self.sources[object];
+        self.note_content(object, source);
     }
 
     /// Fills all that passes of a frame write with bytes of ones: NaN for floats, the largest for
@@ -146,7 +184,7 @@ impl Runner {
         self.pool.buffer(resolve(&self.plan, &self.rotation, object))
     }
 
-    fn share_memory(&mut self, object: ObjectId, memory: Memory) -> Result<(), Diagnostic> {
+    fn share_memory(&mut self, object: ObjectId, memory: Memory, source: Content) -> Result<(), Diagnostic> {
         let fits = match (&self.plan.objects[object].kind, &memory) {
             (ObjectKind::Texture(t), Memory::Texture(texture)) => is_like(t, texture),
             (ObjectKind::Buffer(b), Memory::Buffer(buffer)) => buffer.size() >= b.bytes(),
@@ -155,8 +193,12 @@ impl Runner {
         if !fits {
             return Err(self.unfit(object, &format!("was planned as {}", self.planned(object))));
         }
-        if self.pool.share(object, memory) {
+        let is_news = self.pool.share(object, memory);
+        if is_news {
             self.forget_variants(object);
+        }
+        if is_news || source == Content::Unversioned || source != self.sources[object] {
+            self.note_content(object, source);
         }
         Ok(())
     }

@@ -132,6 +132,13 @@ impl Session {
         Ok(built)
     }
 
+    /// Whether all passes run for each picture, also those whose results are there already.
+    pub fn run_all(&mut self, on: bool) {
+        for runner in [&mut self.graph, &mut self.present].into_iter().flatten() {
+            runner.run_all(on);
+        }
+    }
+
     /// Plans and prepares the graph again with more room; inputs stay.
     pub(super) fn grow(&mut self) -> Result<(), Diagnostics> {
         let Some(content) = self.content.take() else { return Ok(()) };

@@ -4,6 +4,7 @@
 //! runs without an error of wgpu's on a device that has what [`model::Needs`] says, or is
 //! diagnostics.
 
+pub mod changes;
 mod cull;
 pub mod fields;
 mod flow;
@@ -72,8 +73,8 @@ fn plan(program: &Program, request: &Request, stand_in: bool) -> Result<Plan, Di
     }
     let argument_slots = insert::insert(&mut lowering);
     insert::cover_steps(&mut lowering);
-    let units = units::units(&mut lowering);
-    state::seal(&mut lowering, &units);
+    let (units, made_from) = units::units(&mut lowering);
+    state::seal(&mut lowering, &made_from);
     if lowering.diagnostics.has_errors() {
         return Err(lowering.diagnostics);
     }

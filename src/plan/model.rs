@@ -203,7 +203,10 @@ pub enum UniformValue {
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct Unit {
     pub passes: Vec<usize>,
+    /// Those of its own and of all units that it reads from.
     pub causes: Causes,
+    /// The units that read what it writes, in program order, without itself.
+    pub readers: Vec<usize>,
 }
 
 /// What a unit's results depend on, from outside the graph.

@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::lower::{Lowering, fault, traced};
-use super::model::{Causes, ObjectId, Origin, Unit};
+use super::model::{Causes, ObjectId, Origin};
 use crate::diagnostic::{Code, Diagnostic, Span};
 use crate::graph::model::InputKind;
 
@@ -78,8 +78,8 @@ fn touched(lowering: &Lowering<'_>) -> BTreeMap<ObjectId, Touched> {
 }
 
 /// Which state belongs to which steps, when it starts anew, and the rule that steps at a rate do
-/// not see the camera.
-pub(super) fn seal(lowering: &mut Lowering<'_>, units: &[Unit]) {
+/// not see the camera. `made_from` has what each unit of steps is made from.
+pub(super) fn seal(lowering: &mut Lowering<'_>, made_from: &BTreeMap<usize, Causes>) {
     let inputs = &lowering.program.root.inputs;
     let cameras: BTreeSet<String> =
         inputs.iter().filter(|i| matches!(i.kind, InputKind::Camera)).map(|i| i.name.value.clone()).collect();
@@ -96,7 +96,7 @@ pub(super) fn seal(lowering: &mut Lowering<'_>, units: &[Unit]) {
         lowering.steps[index].key = twox_hash::XxHash3_128::oneshot(text.as_bytes());
         lowering.steps[index].state = state;
         if lowering.steps[index].rate.is_some()
-            && let Some(fault) = sees_camera(lowering, units, index, &cameras)
+            && let Some(fault) = sees_camera(lowering, made_from, index, &cameras)
         {
             lowering.diagnostics.push(*fault);
         }
@@ -106,14 +106,15 @@ pub(super) fn seal(lowering: &mut Lowering<'_>, units: &[Unit]) {
 /// A pass of the steps that depends on the camera.
 fn sees_camera(
     lowering: &Lowering<'_>,
-    units: &[Unit],
+    made_from: &BTreeMap<usize, Causes>,
     steps: usize,
     cameras: &BTreeSet<String>,
 ) -> Option<Box<Diagnostic>> {
     let sees = |causes: &Causes| {
         causes.live.iter().any(|live| live.split_once('.').is_some_and(|(input, _)| cameras.contains(input)))
     };
-    let flat = lowering.flat.iter().find(|f| f.pass.steps == Some(steps) && sees(&units[f.pass.unit].causes))?;
+    let of_camera = |unit: usize| made_from.get(&unit).is_some_and(sees);
+    let flat = lowering.flat.iter().find(|f| f.pass.steps == Some(steps) && of_camera(f.pass.unit))?;
     let message = format!("`{}` runs at a rate and depends on the camera", flat.pass.path);
     let mut diagnostic = Diagnostic::error(Code::STATE, message).at(flat.word, "this pass");
     if let Some(by) = lowering.flat.iter().find(|other| sees(&other.causes)).filter(|by| by.word != flat.word) {

@@ -3,10 +3,11 @@
 use std::collections::{BTreeMap, BTreeSet, HashMap, VecDeque};
 
 use super::lower::Lowering;
-use super::model::{Causes, ObjectId, Unit};
+use super::model::{Causes, ObjectId, PassKind, Unit};
 
-/// Groups the passes into units, numbers them in program order, and closes their causes.
-pub(super) fn units(lowering: &mut Lowering<'_>) -> Vec<Unit> {
+/// Groups the passes into units, numbers them in program order, and closes their causes. Also gives,
+/// for each unit of steps, all that it is made from, through other steps too.
+pub(super) fn units(lowering: &mut Lowering<'_>) -> (Vec<Unit>, BTreeMap<usize, Causes>) {
     let group = groups(lowering);
     let mut sets = Sets::new(lowering.flat.len());
     // Passes that write one group, and readers of a version other than the last.
@@ -24,6 +25,10 @@ pub(super) fn units(lowering: &mut Lowering<'_>) -> Vec<Unit> {
         }
         if let Some(index) = flat.pass.steps {
             sets.join(*steps.entry(index).or_insert(p), p);
+        }
+        // Arguments are copied for the draw behind, to a place that no name stands for.
+        if matches!(flat.pass.kind, PassKind::Arguments { .. }) && p + 1 < lowering.flat.len() {
+            sets.join(p, p + 1);
         }
     }
     let mut producers: Vec<Vec<usize>> = vec![Vec::new(); lowering.flat.len()];
@@ -56,11 +61,21 @@ pub(super) fn units(lowering: &mut Lowering<'_>) -> Vec<Unit> {
             bits
         })
         .collect();
-    close(&mut bits, &readers);
-    for (unit, bits) in units.iter_mut().zip(&bits) {
-        unit.causes = names.causes(bits);
+    let only_steps: Vec<bool> =
+        units.iter().map(|unit| unit.passes.iter().all(|p| lowering.flat[*p].pass.steps.is_some())).collect();
+    let mut through = bits.clone();
+    close(&mut bits, &readers, &only_steps, &names.step());
+    let mut made_from = BTreeMap::new();
+    if !steps.is_empty() {
+        close(&mut through, &readers, &vec![false; units.len()], &names.step());
+        let of_steps = steps.values().map(|p| lowering.flat[*p].pass.unit);
+        made_from.extend(of_steps.map(|unit| (unit, names.causes(&through[unit]))));
     }
-    units
+    for ((unit, bits), readers) in units.iter_mut().zip(&bits).zip(readers) {
+        unit.causes = names.causes(bits);
+        unit.readers = readers;
+    }
+    (units, made_from)
 }
 
 /// For each unit those that read from it, without itself.
@@ -76,13 +91,14 @@ fn readers(lowering: &Lowering<'_>, units: &[Unit], producers: &[Vec<usize>]) ->
     readers
 }
 
-/// Hands every unit's causes on to its readers, until nothing changes.
-fn close(bits: &mut [Bits], readers: &[Vec<usize>]) {
+/// Hands every unit's causes on to its readers, until nothing changes. What comes out of steps is
+/// another only when a step ran, whatever the step was made from.
+fn close(bits: &mut [Bits], readers: &[Vec<usize>], only_steps: &[bool], step: &Bits) {
     let mut queue: VecDeque<usize> = (0..bits.len()).collect();
     let mut queued = vec![true; bits.len()];
     while let Some(from) = queue.pop_front() {
         queued[from] = false;
-        let given = bits[from].clone();
+        let given = if only_steps[from] { step.clone() } else { bits[from].clone() };
         for to in &readers[from] {
             let mut changed = false;
             for (have, more) in bits[*to].iter_mut().zip(&given) {
@@ -139,6 +155,13 @@ impl Names {
                 bits[n / 64] |= 1 << (n % 64);
             }
         }
+    }
+
+    /// That a step ran.
+    fn step(&self) -> Bits {
+        let mut bits = self.none();
+        self.set(&mut bits, &Causes { live: ["step".to_owned()].into(), ..Causes::default() });
+        bits
     }
 
     fn causes(&self, bits: &Bits) -> Causes {

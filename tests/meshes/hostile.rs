@@ -10,6 +10,7 @@ use meniscus::scene::meshes::{self, Model};
 use serde_json::json;
 
 use super::build::{Builder, F32, U8, U16, bytes, png};
+use super::surface::{ply, vtk};
 
 /// The numbers of a test: the same in each run.
 struct Random(u64);
@@ -93,8 +94,48 @@ fn seeds() -> Vec<(&'static str, Vec<u8>, MemoryFiles)> {
         ("a.glb", rich.glb(), MemoryFiles::default()),
         ("a.obj", obj.as_bytes().to_vec(), with_mtl),
         ("a.mtl", mtl.as_bytes().to_vec(), pictures.with("a.obj", obj)),
+        ("a.vtk", grid(true), MemoryFiles::default()),
+        ("a.vtk", grid(false), MemoryFiles::default()),
+        ("a.ply", faces(true), MemoryFiles::default()),
+        ("a.ply", faces(false), MemoryFiles::default()),
         ("data.bin", rich.binary.clone(), rich.files()),
     ]
+}
+
+/// Cells of legacy VTK, as text in the form of version 5 and as binary in that of version 4.
+fn grid(is_text: bool) -> Vec<u8> {
+    if is_text {
+        let cells =
+            "CELLS 3 6\nOFFSETS vtktypeint64\n0 3 6\nCONNECTIVITY vtktypeint64\n1 2 3 1 3 4\nCELL_TYPES 2\n5\n7\n";
+        return vtk("UNSTRUCTURED_GRID", &format!("{cells}POINT_DATA 5\nNORMALS n float\n{}", "0 0 1\n".repeat(5)))
+            .into_bytes();
+    }
+    let mut file = b"# vtk DataFile Version 4.2\nt\nBINARY\nDATASET POLYDATA\nPOINTS 4 float\n".to_vec();
+    [0.0f32, 0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 1.0, 0.0].iter().for_each(|x| file.extend(x.to_be_bytes()));
+    file.extend(b"\nPOLYGONS 2 9\n");
+    [4, 0, 1, 2, 3, 3, 0, 2, 3].iter().for_each(|x: &i32| file.extend(x.to_be_bytes()));
+    file.extend(b"\nTRIANGLE_STRIPS 1 5\n");
+    [4, 0, 1, 2, 3].iter().for_each(|x: &i32| file.extend(x.to_be_bytes()));
+    file
+}
+
+/// Faces of PLY.
+fn faces(is_text: bool) -> Vec<u8> {
+    let more = "element face 2\nproperty list uchar int vertex_indices\nend_header\n";
+    if is_text {
+        let rows = "0 0 0 1 2 3\n1 0 0 1 2 3\n1 1 0 1 2 3\n0 1 0 1 2 3\n5 5 5 1 2 3\n";
+        return format!("{}{rows}4 0 1 2 3\n3 0 1 4\n", ply("ascii", more)).into_bytes();
+    }
+    let mut file = ply("binary_little_endian", more).into_bytes();
+    for row in 0..5_u8 {
+        [f32::from(row), f32::from(row * row), 1.0].iter().for_each(|x| file.extend(x.to_le_bytes()));
+        file.extend([1, 2, 3]);
+    }
+    for face in [&[0, 1, 2, 3][..], &[0, 1, 4]] {
+        file.push(face.len() as u8);
+        face.iter().for_each(|index: &i32| file.extend(index.to_le_bytes()));
+    }
+    file
 }
 
 /// Damages a file in one of the ways that disks, transfers and ill will do.

@@ -253,6 +253,22 @@ fn obj_files_are_what_another_reader_finds() {
     }
 }
 
+#[test]
+fn an_obstacle_of_a_simulator_is_a_model() {
+    let Some(folder) = folder() else { return };
+    let model = load(&folder.join("bakes/dd_sphere_20_obstacle.vtk"));
+    let primitive = &model.meshes[0].primitives[0];
+    assert_eq!((primitive.positions.len(), primitive.indices.len()), (382, 760 * 3));
+    outwards("obstacle", primitive);
+    let bounds = model.bounds(&model.pose(None, 0.0)).unwrap();
+    let (middle, radius) = ((bounds.min + bounds.max) / 2.0, (bounds.max - bounds.min) / 2.0);
+    for (position, normal) in primitive.positions.iter().zip(&primitive.normals) {
+        let out = Vec3::from_array(*position) - middle;
+        assert!((out.length() - radius.x).abs() < 0.02 * radius.x, "a sphere: {out} {radius}");
+        assert!(out.normalize().dot(Vec3::from_array(*normal)) > 0.99);
+    }
+}
+
 /// The normals of a closed mesh point away from what it encloses, and lean to their triangles.
 fn outwards(name: &str, primitive: &Primitive) {
     let mut volume = 0.0;

@@ -6,6 +6,7 @@ use meniscus::files::MemoryFiles;
 use serde_json::{Value, json};
 
 use super::build::{Builder, F32, U8, U16, bytes, png};
+use super::surface::{ply, vtk};
 use super::{golden, read, said};
 
 /// The findings about each of many files.
@@ -61,7 +62,31 @@ fn every_message_is_as_it_is_written_down() {
     materials(&mut sheet);
     animations(&mut sheet);
     objs(&mut sheet);
+    surfaces(&mut sheet);
     golden::golden("tests/meshes/wrong.txt", &sheet.0);
+}
+
+fn surfaces(sheet: &mut Sheet) {
+    sheet.raw("particles and no surface", "a.vtk", vtk("POLYDATA", "VERTICES 1 2\n1 0\n"));
+    sheet.raw("a polygon of points that are not there", "a.vtk", vtk("POLYDATA", "POLYGONS 1 4\n3 1 2 5\n"));
+    sheet.raw("a polygon of negative points", "a.vtk", vtk("POLYDATA", "POLYGONS 1 4\n3 1 2 -1\n"));
+    sheet.raw("a polygon that goes beyond its list", "a.vtk", vtk("POLYDATA", "POLYGONS 1 4\n4 1 2 3\n"));
+    let offsets = |o: &str| format!("POLYGONS 2 3\nOFFSETS vtktypeint64\n{o}\nCONNECTIVITY vtktypeint64\n1 2 3\n");
+    sheet.raw("an offset beyond the corners", "a.vtk", vtk("POLYDATA", &offsets("0 4")));
+    sheet.raw("solids", "a.vtk", vtk("UNSTRUCTURED_GRID", "CELLS 1 5\n4 1 2 3 4\nCELL_TYPES 1\n10\n"));
+    sheet.raw("another dataset", "a.vtk", vtk("STRUCTURED_POINTS", ""));
+    let rows = "0 0 0 1 1 1\n".repeat(5);
+    let faces =
+        |list: &str| format!("element face 1\nproperty list uchar int vertex_index\nend_header\n{rows}{list}\n");
+    sheet.raw("faces without vertices", "a.ply", "ply\nformat ascii 1.0\nelement face 0\nend_header\n");
+    sheet.raw("a face of points that are not there", "a.ply", ply("ascii", &faces("3 0 1 9")));
+    sheet.raw("a face that is cut short", "a.ply", ply("ascii", &faces("3 0 1")));
+    sheet.raw("a face of a length that is none", "a.ply", ply("ascii", &faces("x")));
+    sheet.raw(
+        "points that are not finite",
+        "a.ply",
+        ply("ascii", &faces("3 0 1 2")).replacen("0 0 0 1", "nan 0 0 1", 1),
+    );
 }
 
 fn names_and_forms(sheet: &mut Sheet) {

@@ -14,11 +14,12 @@ use std::fmt::Write as _;
 
 use meniscus::diagnostic::{Diagnostics, Sources};
 use meniscus::files::MemoryFiles;
+use meniscus::format::TextureFormat;
 use meniscus::graph::value::Value;
 use meniscus::plan::instantiate;
-use meniscus::plan::model::{Plan, Request};
+use meniscus::plan::model::{InputInfo, Plan, Request, Texture};
 use meniscus::program;
-use wgpu_types::{Features, Limits};
+use wgpu_types::{Features, Limits, TextureUsages};
 
 const FORMATS: [&str; 3] = ["Rgba16Float", "R32Float", "Rgba8Unorm"];
 const SIZES: [&str; 3] = ["\"viewport\"", "(16, 16)", "(7, 5)"];
@@ -30,11 +31,18 @@ pub struct Generated {
     shaders: Vec<(String, String)>,
     /// Passes that the graph contributes at the values of `times` and `fancy`.
     pub passes: usize,
-    times: i64,
-    fancy: bool,
+    pub times: i64,
+    pub fancy: bool,
     /// What somebody asks for besides the first output.
-    roots: Vec<String>,
+    pub roots: Vec<String>,
+    /// Resources that hold something at the end.
+    pub written: Vec<String>,
 }
+
+/// Pixels each way of the input `picture`.
+pub const PICTURE: u32 = 8;
+/// Items of the input `given`.
+pub const GIVEN: u32 = 40;
 
 impl Generated {
     pub fn files(&self) -> MemoryFiles {
@@ -51,7 +59,7 @@ impl Generated {
         Request {
             viewport: [24, 18],
             params: params.into_iter().map(|(name, value)| (name.to_owned(), value)).collect(),
-            inputs: Default::default(),
+            inputs: inputs(),
             capacities: Default::default(),
             roots: self.roots.clone(),
             features,
@@ -65,6 +73,23 @@ impl Generated {
         let Some(program) = loaded.program else { return Err((loaded.diagnostics, sources)) };
         instantiate(&program, request).map_err(|found| (found, sources))
     }
+}
+
+fn inputs() -> std::collections::BTreeMap<String, InputInfo> {
+    let picture = Texture {
+        format: TextureFormat::Rgba8Unorm,
+        width: PICTURE,
+        height: PICTURE,
+        layers: 1,
+        is_3d: false,
+        mips: 1,
+        samples: 1,
+        usages: TextureUsages::empty(),
+    };
+    let given = InputInfo::Buffer { items: u64::from(GIVEN), stride: 4 };
+    [("camera", InputInfo::Camera), ("picture", InputInfo::Texture(picture)), ("given", given)]
+        .map(|(name, info)| (name.to_owned(), info))
+        .into()
 }
 
 /// A texture or buffer, and which of its parts something wrote.
@@ -272,13 +297,14 @@ impl Builder<'_> {
         let outputs: Vec<String> = written.iter().take(3).map(|name| format!("{name:?}")).collect();
         let resources: String = self.things.iter().map(declaration).collect();
         let graph = format!(
-            "Graph(\n    params: {{ \"times\": Int(default: 1, min: 0, max: 5), \"fancy\": Bool(default: false) }},\n    \
+            "Graph(\n    inputs: {{ \"camera\": Camera, \"picture\": Texture, \"given\": Buffer }},\n    params: {{ \"times\": Int(default: 1, min: 0, max: 5), \"fancy\": Bool(default: false) }},\n    \
              state: {{ \"old\": Buffer(items: 16), \"next\": Buffer(items: 16) }},\n    resources: {{\n{resources}        \
              \"resolved\": Texture(format: Rgba8Unorm, size: (16, 16)),\n    }},\n    passes: [\n{}    ],\n    outputs: [{}],\n)\n",
             self.text,
             outputs.join(", ")
         );
-        Generated { graph, shaders: shaders::all(), passes: self.passes, times: self.times, fancy: self.fancy, roots }
+        let (passes, times, fancy) = (self.passes, self.times, self.fancy);
+        Generated { graph, shaders: shaders::all(), passes, times, fancy, roots, written }
     }
 }
 

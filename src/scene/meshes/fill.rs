@@ -88,6 +88,20 @@ pub(super) fn finish(
     Some(primitive)
 }
 
+/// Renumbers indices so that only vertices that are used remain; gives those, in order. Files
+/// often have one array of vertices for many primitives.
+pub(super) fn compact(indices: &mut [u32], count: usize) -> Vec<u32> {
+    let mut used = indices.to_vec();
+    used.sort_unstable();
+    used.dedup();
+    if used.len() < count {
+        for index in indices {
+            *index = used.binary_search(index).unwrap_or(0) as u32;
+        }
+    }
+    used
+}
+
 fn is_finite(numbers: &[f32]) -> bool {
     numbers.iter().all(|x| x.is_finite())
 }

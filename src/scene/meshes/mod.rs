@@ -16,6 +16,7 @@ mod pictures;
 mod polygon;
 mod pose;
 mod report;
+mod surface;
 mod tangents;
 
 use std::path::Path;
@@ -36,8 +37,13 @@ type Gatherer = fn(&mut Bundle, &dyn Files);
 type Reader = fn(&Bundle, &mut Report) -> Option<Model>;
 
 /// Ends of file names, who finds the files that such a file names, and who reads them.
-const READERS: &[(&str, Gatherer, Reader)] =
-    &[("gltf", gltf::gather, gltf::read), ("glb", gltf::gather, gltf::read), ("obj", obj::gather, obj::read)];
+const READERS: &[(&str, Gatherer, Reader)] = &[
+    ("gltf", gltf::gather, gltf::read),
+    ("glb", gltf::gather, gltf::read),
+    ("obj", obj::gather, obj::read),
+    ("ply", surface::gather, surface::read),
+    ("vtk", surface::gather, surface::read),
+];
 
 fn reader_for(path: &Path) -> Option<(Gatherer, Reader)> {
     let end = path.extension()?.to_str()?;

@@ -5,8 +5,8 @@
 //! is checked against the bytes that are there before memory is taken for it, so that memory is
 //! bounded by what the file holds, and what is wrong becomes a [`ReadError`] with its place.
 //!
-//! Not tried here: cells, polygons and everything else that is not a value per point. They are
-//! read over.
+//! Cells and polygons are read over, but for [`surface`], which mesh files ask for. Nothing else
+//! that is not a value per point is tried here.
 
 mod bgeo;
 mod cursor;
@@ -18,6 +18,7 @@ mod legacy_vtk;
 mod parallel;
 mod pdb;
 mod ply;
+mod polygons;
 mod ptc;
 mod radius;
 mod stream;
@@ -30,6 +31,7 @@ use std::borrow::Cow;
 use std::path::Path;
 
 pub use error::{Place, ReadError};
+pub(super) use polygons::Polygons;
 pub use radius::estimate_radius;
 pub use values::{Kind, Values};
 
@@ -91,6 +93,15 @@ impl ParticleSet {
     }
 }
 
+/// The points of a file and the polygons between them.
+#[derive(Clone, Debug)]
+pub(super) struct Surface {
+    /// All rows of the file, finite or not, since polygons count them.
+    pub positions: Vec<[f32; 3]>,
+    pub attributes: Vec<Attribute>,
+    pub polygons: Polygons,
+}
+
 type Reader = fn(&[u8]) -> Result<finish::Found, ReadError>;
 
 /// Ends of file names and who reads such files.
@@ -143,4 +154,14 @@ pub fn read(path: &Path, bytes: &[u8]) -> Result<ParticleSet, ReadError> {
         return Err(ReadError::new("the file is empty").at(Place::Byte(0)));
     }
     finish::finish(reader(bytes)?)
+}
+
+/// Reads a file that may hold a surface, of the formats that have such: legacy VTK and PLY.
+///
+/// # Errors
+/// As [`read`], and if a polygon has a corner that is no point.
+pub(super) fn surface(path: &Path, bytes: &[u8]) -> Result<Surface, ReadError> {
+    let is_ply = path.extension().is_some_and(|end| end.eq_ignore_ascii_case("ply"));
+    let (found, polygons) = if is_ply { ply::read_surface(bytes)? } else { legacy_vtk::read_surface(bytes)? };
+    Ok(Surface { positions: finish::triples(&found.position).into_owned(), attributes: found.attributes, polygons })
 }

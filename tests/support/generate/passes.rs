@@ -7,7 +7,7 @@ use super::{Builder, What};
 impl Builder<'_> {
     /// Grows the graph by something.
     pub(super) fn step(&mut self) {
-        match self.below(21) {
+        match self.below(24) {
             0 => {
                 let (src, dst) = self.pair(|what| matches!(what, What::Buffer { .. }));
                 self.copy_items(&src, &dst);
@@ -53,6 +53,24 @@ impl Builder<'_> {
             17 => self.stencilled(),
             18 => self.sliced(),
             19 => self.masked(),
+            20 => {
+                let dst = self.written(|what| matches!(what, What::Texture { layers: 1, mips: 1, .. }));
+                let dst = self.name(dst);
+                self.pass("Fullscreen", &format!("shader: \"seen.wgsl\", color: [(to: \"{dst}\", write: \"rgb\")]"));
+            }
+            21 => {
+                let dst = self.written(|what| matches!(what, What::Texture { layers: 1, mips: 1, .. }));
+                let dst = self.name(dst);
+                self.pass(
+                    "Fullscreen",
+                    &format!("shader: \"filter.wgsl\", color: [\"{dst}\"], bind: {{\"src\": \"picture\"}}"),
+                );
+            }
+            22 => {
+                let dst = self.written(|what| matches!(what, What::Buffer { .. }));
+                let dst = self.name(dst);
+                self.copy_items("given", &dst);
+            }
             _ => self.bundled(),
         }
     }
@@ -313,7 +331,9 @@ impl Builder<'_> {
     /// Something that happens over time, and something that looks at it.
     pub(super) fn steps(&mut self) -> String {
         let swaps = 1 + self.below(3);
-        let rate = ["60", "PerFrame"][self.below(2) as usize];
+        // What may come from the camera happens once a frame.
+        let sees = self.text.contains("seen.wgsl");
+        let rate = ["60", "PerFrame"][if sees { 1 } else { self.below(2) as usize }];
         let before = self.passes;
         _ = writeln!(
             self.text,
@@ -323,8 +343,22 @@ impl Builder<'_> {
             "Compute",
             "shader: \"copy.wgsl\", each: Item(\"next\"), bind: {\"src\": \"old\", \"dst\": \"next\"}",
         );
-        self.text.push_str("      ]) ]),\n");
+        self.text.push_str("      ]),\n");
         self.passes = before + swaps as usize;
+        self.pass("Compute", "shader: \"add.wgsl\", each: Item(\"old\"), bind: {\"dst\": \"old\"}");
+        // What the frame made flows in, and what it made is changed.
+        let is_written = |name: &str| self.things.iter().any(|thing| thing.name == name && thing.is_written());
+        let (flows, changes) = (is_written("items_a"), is_written("items_b"));
+        if self.below(2) == 0 && flows {
+            self.pass(
+                "Compute",
+                "shader: \"feed.wgsl\", each: Item(\"old\"), bind: {\"src\": \"items_a\", \"dst\": \"old\"}",
+            );
+        }
+        if self.below(3) == 0 && changes {
+            self.pass("Compute", "shader: \"add.wgsl\", each: Item(\"items_b\"), bind: {\"dst\": \"items_b\"}");
+        }
+        self.text.push_str("      ]),\n");
         let dst = self.written(|what| matches!(what, What::Buffer { items: 100 }));
         let dst = self.name(dst);
         self.copy_items("old", &dst);

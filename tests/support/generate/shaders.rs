@@ -32,6 +32,19 @@ pub fn all() -> Vec<(String, String)> {
                  {thread} {{ if i.x < arrayLength(&dst) {{ dst[i.x] = src[min(i.x, arrayLength(&src) - 1u)]; }} }}"
             ),
         ),
+        (
+            "feed",
+            format!(
+                "var<storage, read> src: array<u32>; var<storage, read_write> dst: array<u32>;\n\
+                 {thread} {{ if i.x < arrayLength(&dst) {{ dst[i.x] += src[min(i.x, arrayLength(&src) - 1u)]; }} }}"
+            ),
+        ),
+        (
+            "seen",
+            "struct Eye { position: vec3<f32> } var<uniform> camera: Eye;\n@fragment fn main() -> @location(0) vec4<f32> \
+             { return vec4<f32>(camera.position, 1.0); }"
+                .to_owned(),
+        ),
         ("paint", white.to_owned()),
         ("filter", format!("var src: texture_2d<f32>;\n{at} {{ return textureLoad(src, vec2<i32>(p.xy), 0); }}")),
         ("layers", format!("var src: texture_2d_array<f32>;\n{at} {{ return textureLoad(src, vec2<i32>(p.xy), 1, 0); }}")),

@@ -45,7 +45,7 @@ pub fn read(
         report.warn(place, format!("{count} left over at the end"));
         indices.truncate(indices.len() - left);
     }
-    let used = compact(&mut indices, positions.count);
+    let used = fill::compact(&mut indices, positions.count);
     let raw = attributes(data, from, &positions, &used, indices, place, report)?;
     fill::finish(raw, Shading::Flat, materials.normal_map(material), material, place, report)
 }
@@ -98,20 +98,6 @@ fn triangles_of_strip(corners: &[u32]) -> Vec<u32> {
 fn triangles_of_fan(corners: &[u32]) -> Vec<u32> {
     let Some((first, rest)) = corners.split_first() else { return Vec::new() };
     rest.windows(2).flat_map(|pair| [pair[0], pair[1], *first]).collect()
-}
-
-/// Renumbers indices so that only vertices that are used remain; gives those, in order. Files
-/// often have one array of vertices for many primitives.
-fn compact(indices: &mut [u32], count: usize) -> Vec<u32> {
-    let mut used = indices.to_vec();
-    used.sort_unstable();
-    used.dedup();
-    if used.len() < count {
-        for index in indices {
-            *index = used.binary_search(index).unwrap_or(0) as u32;
-        }
-    }
-    used
 }
 
 fn attributes(

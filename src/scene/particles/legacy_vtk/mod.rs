@@ -3,12 +3,15 @@
 //! version 4 (counts and indices in one list) and of version 5 (offsets and connectivity).
 
 mod arrays;
+mod cells;
 
 use super::Attribute;
 use super::cursor::{Cursor, count_of};
 use super::error::{Place, ReadError, shown};
 use super::finish::Found;
+use super::polygons::Polygons;
 use super::values::{Kind, Layout, Order, Values};
+use cells::Cells;
 
 /// Numbers as a file declares them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -38,10 +41,22 @@ struct Reader<'a> {
     attributes: Vec<Attribute>,
     globals: Vec<(String, f64)>,
     notes: Vec<String>,
+    /// Where surfaces are asked for.
+    cells: Option<Cells>,
 }
 
 pub(super) fn read(bytes: &[u8]) -> Result<Found, ReadError> {
-    let mut reader = open(bytes)?;
+    read_all(open(bytes)?).map(|(found, _)| found)
+}
+
+/// The points and the polygons between them.
+pub(super) fn read_surface(bytes: &[u8]) -> Result<(Found, Polygons), ReadError> {
+    let (found, cells) = read_all(Reader { cells: Some(Cells::default()), ..open(bytes)? })?;
+    let polygons = cells.unwrap_or_default().polygons(found.position.len() / 3)?;
+    Ok((found, polygons))
+}
+
+fn read_all(mut reader: Reader<'_>) -> Result<(Found, Option<Cells>), ReadError> {
     while let Some(word) = reader.cursor.word() {
         reader.keyword(word)?;
     }
@@ -52,7 +67,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Found, ReadError> {
     found.attributes = reader.attributes;
     found.globals = reader.globals;
     found.notes = reader.notes;
-    Ok(found)
+    Ok((found, reader.cells))
 }
 
 /// Reads the four lines that every file begins with.
@@ -90,6 +105,7 @@ fn open(bytes: &[u8]) -> Result<Reader<'_>, ReadError> {
         attributes: Vec::new(),
         globals: Vec::new(),
         notes: Vec::new(),
+        cells: None,
     })
 }
 
@@ -98,6 +114,10 @@ impl<'a> Reader<'a> {
         match word.to_ascii_uppercase().as_slice() {
             b"DATASET" => self.dataset(),
             b"POINTS" => self.points(),
+            b"CELLS" | b"VERTICES" | b"LINES" | b"POLYGONS" | b"TRIANGLE_STRIPS" if self.cells.is_some() => {
+                self.keep_cells(word)
+            }
+            b"CELL_TYPES" if self.cells.is_some() => self.keep_cell_types(),
             b"CELLS" | b"VERTICES" | b"LINES" | b"POLYGONS" | b"TRIANGLE_STRIPS" => self.cells(),
             b"CELL_TYPES" => {
                 let count = self.count("the number of cell types")?;

@@ -92,7 +92,14 @@ fn scalar_kind(property: &Property) -> Option<Kind> {
     }
 }
 
-fn push(cursor: &mut Cursor<'_>, values: &mut Values, kind: Kind, format: Format, what: &str) -> Result<(), ReadError> {
+/// Appends one number.
+pub(super) fn push(
+    cursor: &mut Cursor<'_>,
+    values: &mut Values,
+    kind: Kind,
+    format: Format,
+    what: &str,
+) -> Result<(), ReadError> {
     match format {
         Format::Binary(order) => {
             let bytes = cursor.take(kind.size(), what)?;
@@ -110,24 +117,48 @@ fn push(cursor: &mut Cursor<'_>, values: &mut Values, kind: Kind, format: Format
     }
 }
 
-fn skip_property(cursor: &mut Cursor<'_>, property: &Property, format: Format, what: &str) -> Result<(), ReadError> {
+/// Reads over one property of a row.
+pub(super) fn skip_property(
+    cursor: &mut Cursor<'_>,
+    property: &Property,
+    format: Format,
+    what: &str,
+) -> Result<(), ReadError> {
     match (property, format) {
         (Property::Scalar(..), Format::Text) => word(cursor, what).map(|_| ()),
         (Property::Scalar(_, kind), Format::Binary(_)) => cursor.take(kind.size(), what).map(|_| ()),
-        (Property::List(name, ..), Format::Text) => {
+        (Property::List(name, length, items), _) => {
+            let count = list_length(cursor, name, *length, format, what)?;
+            match format {
+                Format::Text => cursor.skip_words(count, what),
+                Format::Binary(_) => cursor.take(count.saturating_mul(items.size()), what).map(|_| ()),
+            }
+        }
+    }
+}
+
+/// The number of items of a list, which follow it.
+pub(super) fn list_length(
+    cursor: &mut Cursor<'_>,
+    name: &str,
+    kind: Kind,
+    format: Format,
+    what: &str,
+) -> Result<usize, ReadError> {
+    match format {
+        Format::Text => {
             let length = word(cursor, what)?;
             let message = || format!("list `{name}`: expected its length, found {}", shown(length));
-            let count = count_of(length).ok_or_else(|| cursor.text_error_before(length, message()))?;
-            cursor.skip_words(count, what)
+            count_of(length).ok_or_else(|| cursor.text_error_before(length, message()))
         }
-        (Property::List(name, length, items), Format::Binary(order)) => {
-            let mut value = Values::empty(*length);
-            value.extend(cursor.take(length.size(), what)?, order);
+        Format::Binary(order) => {
+            let mut value = Values::empty(kind);
+            value.extend(cursor.take(kind.size(), what)?, order);
             let length = value.uniform().unwrap_or(-1.0);
             if length < 0.0 {
                 return Err(cursor.byte_error(format!("list `{name}`: a length of {length}")));
             }
-            cursor.take((length as usize).saturating_mul(items.size()), what).map(|_| ())
+            Ok(length as usize)
         }
     }
 }

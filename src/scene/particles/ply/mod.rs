@@ -2,6 +2,7 @@
 //! together become one attribute; other elements are read over.
 
 mod body;
+mod faces;
 
 use super::Attribute;
 use super::cursor::{Cursor, count_of};
@@ -9,6 +10,7 @@ use super::error::{ReadError, shown};
 use super::finish::Found;
 use super::group::group;
 use super::values::{Kind, Order, Values};
+pub(super) use faces::read_surface;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Format {
