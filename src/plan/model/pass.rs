@@ -286,7 +286,10 @@ pub fn each_ref(kind: &mut PassKind, visit: &mut dyn FnMut(&mut ObjectRef)) {
             shader(&mut draw.shader, visit);
             match &mut draw.geometry {
                 Geometry::Indexed { indices, .. } | Geometry::Indirect { indices: Some(indices), .. } => visit(indices),
-                // What inputs fill is never swapped.
+                Geometry::Meshes(meshes) => {
+                    visit(&mut meshes.indices);
+                    meshes.vertices.iter_mut().filter_map(|v| v.buffer.as_mut()).for_each(visit);
+                }
                 _ => {}
             }
             for target in &mut draw.color {
