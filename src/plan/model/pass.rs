@@ -288,7 +288,7 @@ pub fn each_ref(kind: &mut PassKind, visit: &mut dyn FnMut(&mut ObjectRef)) {
                 Geometry::Indexed { indices, .. } | Geometry::Indirect { indices: Some(indices), .. } => visit(indices),
                 Geometry::Meshes(meshes) => {
                     visit(&mut meshes.indices);
-                    meshes.vertices.iter_mut().filter_map(|v| v.buffer.as_mut()).for_each(visit);
+                    meshes.vertices.iter_mut().filter_map(|v| v.buffer.as_mut()).for_each(&mut *visit);
                 }
                 _ => {}
             }
