@@ -12,6 +12,8 @@ mod golden;
 mod hostile;
 #[path = "meshes/obj.rs"]
 mod obj;
+#[path = "meshes/own.rs"]
+mod own;
 #[path = "meshes/shared.rs"]
 mod shared;
 #[path = "meshes/surface.rs"]
