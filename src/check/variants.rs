@@ -41,6 +41,7 @@ fn stand_in(program: &Program, kind: &InputKind) -> Option<InputInfo> {
         InputKind::Texture { dimension } => {
             Some(InputInfo::Texture(crate::plan::stand_in_texture(dimension.as_ref().map(|d| d.value))))
         }
+        InputKind::Meshes { .. } => Some(InputInfo::Meshes(crate::plan::meshes::stand_in())),
         InputKind::Buffer | InputKind::Counted => Some(InputInfo::Buffer { items: 1000, stride: 4 }),
         InputKind::Table => Some(InputInfo::Table { rows: vec![Default::default(); 4] }),
     }

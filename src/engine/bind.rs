@@ -7,6 +7,8 @@ use wgpu_types::{TextureAspect, TextureFormat};
 use super::clear::{self, ClearVariant};
 use super::convert;
 use super::gpu::Gpu;
+use super::materials::Materials;
+use super::meshes::{ByFaces, MeshVariant};
 use super::mips::{self, MipStep};
 use super::pipeline::Pipeline;
 use super::pool::Pool;
@@ -36,6 +38,7 @@ pub(super) struct DrawVariant {
     pub color: Vec<(wgpu::TextureView, Option<wgpu::TextureView>)>,
     pub depth: Option<wgpu::TextureView>,
     pub indices: Option<wgpu::Buffer>,
+    pub meshes: Option<MeshVariant>,
 }
 
 /// What does not change between variants.
@@ -57,6 +60,9 @@ pub(super) struct Bench<'a> {
     pub uniforms: &'a Uniforms,
     pub fixed: &'a Fixed,
     pub rotation: &'a [usize],
+    pub materials: &'a Materials,
+    /// Of each pass, by index.
+    pub by_faces: &'a [Option<ByFaces>],
 }
 
 impl Fixed {
@@ -106,12 +112,7 @@ pub(super) fn references(pass: &Pass) -> Vec<ObjectRef> {
                 found.extend(target.resolve.as_ref().map(|v| v.object));
             }
             found.extend(draw.depth.as_ref().map(|d| d.view.object));
-            match draw.geometry {
-                Geometry::Indexed { indices, .. } | Geometry::Indirect { indices: Some(indices), .. } => {
-                    found.push(indices);
-                }
-                _ => {}
-            }
+            found.extend(draw.geometry.buffers());
             &draw.shader.bindings
         }
         PassKind::Clear { view, .. } => {
@@ -130,9 +131,14 @@ pub(super) fn references(pass: &Pass) -> Vec<ObjectRef> {
         }
     };
     found.extend(bindings.iter().filter_map(|b| match &b.bound {
-        Bound::UniformBuffer { buffer } | Bound::Storage { buffer, .. } => Some(*buffer),
+        Bound::UniformBuffer { buffer } | Bound::Storage { buffer, .. } | Bound::Material { buffer, .. } => {
+            Some(*buffer)
+        }
         Bound::Texture { view, .. } | Bound::StorageTexture { view, .. } => Some(view.object),
-        Bound::Uniform { .. } | Bound::Sampler { .. } => None,
+        Bound::Uniform { .. }
+        | Bound::Sampler { .. }
+        | Bound::MaterialTexture { .. }
+        | Bound::MaterialSampler { .. } => None,
     }));
     found
 }
@@ -148,8 +154,10 @@ impl Bench<'_> {
     pub fn variant(&self, index: usize, pipeline: Option<&Pipeline>) -> Result<Variant, String> {
         let pass = &self.plan.passes[index];
         match &pass.kind {
-            PassKind::Compute { shader, .. } => Ok(Variant::Compute(self.group(pass, pipeline, &shader.bindings)?)),
-            PassKind::Draw(draw) => Ok(Variant::Draw(self.draw(pass, pipeline, draw)?)),
+            PassKind::Compute { shader, .. } => {
+                Ok(Variant::Compute(self.group(pass, pipeline, &shader.bindings, 0)?))
+            }
+            PassKind::Draw(draw) => Ok(Variant::Draw(self.draw(index, pass, pipeline, draw)?)),
             PassKind::Clear { view, value } => clear::variant(self, pass, pipeline, view, *value).map(Variant::Clear),
             PassKind::Mips { texture } => mips::variant(self, pass, pipeline, *texture).map(Variant::Mips),
             PassKind::Settle { counted, arguments } => {
@@ -159,7 +167,7 @@ impl Bench<'_> {
         }
     }
 
-    fn draw(&self, pass: &Pass, pipeline: Option<&Pipeline>, draw: &Draw) -> Result<DrawVariant, String> {
+    fn draw(&self, index: usize, pass: &Pass, pipeline: Option<&Pipeline>, draw: &Draw) -> Result<DrawVariant, String> {
         let color = draw.color.iter().map(|target| {
             let resolve = target.resolve.as_ref().map(|v| self.attachment(v)).transpose()?;
             Ok((self.attachment(&target.view)?, resolve))
@@ -170,11 +178,14 @@ impl Bench<'_> {
             }
             _ => None,
         };
+        let meshes = self.meshes(index, pass, draw, pipeline)?;
+        let group = if meshes.is_some() { None } else { self.group(pass, pipeline, &draw.shader.bindings, 0)? };
         Ok(DrawVariant {
-            group: self.group(pass, pipeline, &draw.shader.bindings)?,
+            group,
             color: color.collect::<Result<_, String>>()?,
             depth: draw.depth.as_ref().map(|d| self.attachment(&d.view)).transpose()?,
             indices,
+            meshes,
         })
     }
 
@@ -217,11 +228,13 @@ impl Bench<'_> {
         }))
     }
 
-    fn group(
+    /// The bind group of a pass, or of one material of it.
+    pub fn group(
         &self,
         pass: &Pass,
         pipeline: Option<&Pipeline>,
         bindings: &[Binding],
+        material: u32,
     ) -> Result<Option<wgpu::BindGroup>, String> {
         let Some(layout) = pipeline.and_then(|p| p.layout.as_ref()) else { return Ok(None) };
         // Views first, since entries borrow them.
@@ -236,7 +249,7 @@ impl Bench<'_> {
         let entries = bindings.iter().zip(&views).map(|(binding, view)| {
             let resource = match view {
                 Some(view) => wgpu::BindingResource::TextureView(view),
-                None => self.resource(pass, &binding.bound)?,
+                None => self.resource(pass, &binding.bound, material)?,
             };
             Ok(wgpu::BindGroupEntry { binding: binding.binding, resource })
         });
@@ -244,7 +257,7 @@ impl Bench<'_> {
         Ok(Some(self.make_group(&pass.path, layout, &entries)))
     }
 
-    fn resource(&self, pass: &Pass, bound: &Bound) -> Result<wgpu::BindingResource<'_>, String> {
+    fn resource(&self, pass: &Pass, bound: &Bound, material: u32) -> Result<wgpu::BindingResource<'_>, String> {
         match bound {
             Bound::Uniform { block } => self
                 .uniforms
@@ -258,8 +271,28 @@ impl Bench<'_> {
                 .get(*sampler)
                 .map(wgpu::BindingResource::Sampler)
                 .ok_or_else(|| format!("there is no sampler {sampler}")),
+            Bound::Material { buffer, bytes } => self.material(*buffer, *bytes, material),
+            Bound::MaterialTexture { input, texture } => {
+                self.materials.texture(input, material, *texture).map(wgpu::BindingResource::TextureView)
+            }
+            Bound::MaterialSampler { input, texture } => {
+                self.materials.sampler(input, material, *texture).map(wgpu::BindingResource::Sampler)
+            }
             Bound::Texture { .. } | Bound::StorageTexture { .. } => Err("a texture without a view".into()),
         }
+    }
+
+    /// One item of a buffer of materials.
+    fn material(&self, buffer: ObjectRef, bytes: u32, material: u32) -> Result<wgpu::BindingResource<'_>, String> {
+        let stride = match &self.plan.objects[self.object(buffer)].kind {
+            ObjectKind::Buffer(b) => u64::from(b.stride),
+            ObjectKind::Texture(_) => 0,
+        };
+        Ok(wgpu::BindingResource::Buffer(wgpu::BufferBinding {
+            buffer: self.buffer(buffer)?,
+            offset: u64::from(material) * stride,
+            size: wgpu::BufferSize::new(u64::from(bytes)),
+        }))
     }
 
     pub fn make_group(

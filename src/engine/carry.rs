@@ -145,7 +145,7 @@ impl Runner {
         }
         for (object, source) in self.plan.objects.iter().zip(&self.sources) {
             if *source == Content::Unversioned
-                && let Origin::Input(input) | Origin::Attribute { input, .. } = &object.origin
+                && let Some(input) = object.origin.input()
             {
                 self.changes.note_input(input);
             }
@@ -157,7 +157,9 @@ impl Runner {
         self.stamps[object] = new_stamp();
         self.sources[object] = source;
         match &self.plan.objects[object].origin {
-            Origin::Input(input) | Origin::Attribute { input, .. } => self.changes.note_input(input),
+            Origin::Input(input) | Origin::Attribute { input, .. } | Origin::Mesh { input, .. } => {
+                self.changes.note_input(input);
+            }
             // Somebody wrote over what passes made.
             Origin::Frame | Origin::State(_) => self.changes.note_lost(),
         }

@@ -5,6 +5,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use super::errors;
 use super::gpu::Gpu;
+use super::meshes::{self, ByFaces};
 use super::pipeline::{Pipeline, PipelineCache, Recipe};
 use super::prepare::recipe;
 use crate::diagnostic::Diagnostics;
@@ -43,26 +44,31 @@ impl Compiler {
     /// With every pipeline that the device refuses.
     pub fn compile(&self, plan: &Plan) -> Result<Compiled, Diagnostics> {
         self.gpu.check()?;
-        self.pipelines(plan).map(|(_, compiled)| compiled)
+        self.pipelines(plan).map(|(_, _, compiled)| compiled)
     }
 
     /// The pipeline of each pass that needs one.
-    pub(super) fn pipelines(&self, plan: &Plan) -> Result<(Pipelines, Compiled), Diagnostics> {
+    pub(super) fn pipelines(&self, plan: &Plan) -> Result<(Pipelines, Vec<Option<ByFaces>>, Compiled), Diagnostics> {
         self.cache.lock().unwrap_or_else(PoisonError::into_inner).begin_round();
         let mut found = Diagnostics::new();
         let mut compiled = Compiled::default();
         let mut pipelines = Vec::with_capacity(plan.passes.len());
+        let mut by_faces = Vec::with_capacity(plan.passes.len());
         for pass in &plan.passes {
             let made = recipe(&self.gpu, plan, pass).and_then(|recipe| {
-                let Some(recipe) = recipe else { return Ok(None) };
-                self.get(&recipe, &pass.path, &mut compiled).map(Some)
+                let Some(recipe) = recipe else { return Ok((None, None)) };
+                let mut get = |recipe: &Recipe| self.get(recipe, &pass.path, &mut compiled);
+                Ok((Some(get(&recipe)?), meshes::by_faces(&recipe, pass, &mut get)?))
             });
             match made {
-                Ok(pipeline) => pipelines.push(pipeline),
+                Ok((pipeline, faces)) => {
+                    pipelines.push(pipeline);
+                    by_faces.push(faces);
+                }
                 Err(error) => found.push(errors::refused("the pipeline of", &pass.path, pass.span, &error)),
             }
         }
-        if found.is_empty() { Ok((pipelines, compiled)) } else { Err(found) }
+        if found.is_empty() { Ok((pipelines, by_faces, compiled)) } else { Err(found) }
     }
 
     /// A pipeline of the engine's own, outside any preparation.

@@ -73,7 +73,9 @@ pub(super) fn buffer_type(ty: wgt::BufferBindingType) -> wgt::BindingType {
 
 fn binding_type(plan: &Plan, bound: &Bound) -> wgt::BindingType {
     match bound {
-        Bound::Uniform { .. } | Bound::UniformBuffer { .. } => buffer_type(wgt::BufferBindingType::Uniform),
+        Bound::Uniform { .. } | Bound::UniformBuffer { .. } | Bound::Material { .. } => {
+            buffer_type(wgt::BufferBindingType::Uniform)
+        }
         Bound::Storage { writable, .. } => buffer_type(wgt::BufferBindingType::Storage { read_only: !writable }),
         Bound::Texture { view, sample, filtered, multisampled } => wgt::BindingType::Texture {
             sample_type: match sample {
@@ -95,6 +97,12 @@ fn binding_type(plan: &Plan, bound: &Bound) -> wgt::BindingType {
             view_dimension: view_dimension(view.dimension),
         },
         Bound::Sampler { sampler } => wgt::BindingType::Sampler(sampler_type(plan.samplers.get(*sampler))),
+        Bound::MaterialTexture { .. } => wgt::BindingType::Texture {
+            sample_type: wgt::TextureSampleType::Float { filterable: true },
+            view_dimension: wgt::TextureViewDimension::D2,
+            multisampled: false,
+        },
+        Bound::MaterialSampler { .. } => wgt::BindingType::Sampler(wgt::SamplerBindingType::Filtering),
     }
 }
 

@@ -120,7 +120,12 @@ fn touches(plan: &Plan, pool: &Pool, draw: &Draw) -> Touches {
             Bound::Texture { view, .. } | Bound::StorageTexture { view, .. } => {
                 touches.read.extend(handles(plan, pool, view.object));
             }
-            Bound::Uniform { .. } | Bound::Sampler { .. } => {}
+            // Materials are inputs, which no pass writes.
+            Bound::Uniform { .. }
+            | Bound::Sampler { .. }
+            | Bound::Material { .. }
+            | Bound::MaterialTexture { .. }
+            | Bound::MaterialSampler { .. } => {}
         }
     }
     touches

@@ -124,6 +124,7 @@ fn draw_one(layout: Vec<wgt::BindGroupLayoutEntry>, fragment: Stage, format: Tex
         kind: RecipeKind::Draw {
             vertex: fullscreen(),
             fragment: Some(fragment),
+            vertices: Vec::new(),
             targets: vec![Some(format.into())],
             primitive: wgt::PrimitiveState::default(),
             depth: None,

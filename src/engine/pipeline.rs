@@ -65,11 +65,21 @@ pub(super) enum RecipeKind {
     Draw {
         vertex: Stage,
         fragment: Option<Stage>,
+        vertices: Vec<VertexSlot>,
         targets: Vec<Option<wgt::ColorTargetState>>,
         primitive: wgt::PrimitiveState,
-        depth: Option<wgt::DepthStencilState>,
+        depth: Option<Box<wgt::DepthStencilState>>,
         samples: u32,
     },
+}
+
+/// A vertex buffer with one attribute.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub(super) struct VertexSlot {
+    pub stride: u64,
+    pub step: wgt::VertexStepMode,
+    pub format: wgt::VertexFormat,
+    pub location: u32,
 }
 
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
@@ -88,9 +98,10 @@ struct Key {
 
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 struct DrawKey {
+    vertices: Vec<VertexSlot>,
     targets: Vec<Option<wgt::ColorTargetState>>,
     primitive: wgt::PrimitiveState,
-    depth: Option<wgt::DepthStencilState>,
+    depth: Option<Box<wgt::DepthStencilState>>,
     samples: u32,
 }
 
@@ -99,10 +110,11 @@ impl Recipe {
         let layout = self.layout.clone();
         match &self.kind {
             RecipeKind::Compute(stage) => Key { layout, stages: vec![stage.key()], draw: None },
-            RecipeKind::Draw { vertex, fragment, targets, primitive, depth, samples } => Key {
+            RecipeKind::Draw { vertex, fragment, vertices, targets, primitive, depth, samples } => Key {
                 layout,
                 stages: std::iter::once(vertex).chain(fragment).map(Stage::key).collect(),
                 draw: Some(DrawKey {
+                    vertices: vertices.clone(),
                     targets: targets.clone(),
                     primitive: *primitive,
                     depth: depth.clone(),
@@ -208,11 +220,22 @@ impl PipelineCache {
     }
 
     fn draw(&mut self, gpu: &Gpu, recipe: &Recipe, layout: &wgpu::PipelineLayout, label: &str) -> wgpu::RenderPipeline {
-        let RecipeKind::Draw { vertex, fragment, targets, primitive, depth, samples } = &recipe.kind else {
+        let RecipeKind::Draw { vertex, fragment, vertices, targets, primitive, depth, samples } = &recipe.kind else {
             unreachable!("only called for draws")
         };
         let vertex_module = self.module(gpu, &vertex.source);
         let fragment_module = fragment.as_ref().map(|f| (self.module(gpu, &f.source), f, f.constants()));
+        let attributes: Vec<_> = vertices
+            .iter()
+            .map(|v| [wgpu::VertexAttribute { format: v.format, offset: 0, shader_location: v.location }])
+            .collect();
+        let buffers: Vec<_> = vertices
+            .iter()
+            .zip(&attributes)
+            .map(|(v, attributes)| {
+                Some(wgpu::VertexBufferLayout { array_stride: v.stride, step_mode: v.step, attributes })
+            })
+            .collect();
         gpu.device().create_render_pipeline(&wgpu::RenderPipelineDescriptor {
             label: Some(label),
             layout: Some(layout),
@@ -220,10 +243,10 @@ impl PipelineCache {
                 module: &vertex_module,
                 entry_point: Some(&vertex.entry),
                 compilation_options: options(&vertex.constants()),
-                buffers: &[],
+                buffers: &buffers,
             },
             primitive: *primitive,
-            depth_stencil: depth.clone(),
+            depth_stencil: depth.as_deref().cloned(),
             multisample: wgpu::MultisampleState { count: *samples, ..wgpu::MultisampleState::default() },
             fragment: fragment_module.as_ref().map(|(module, stage, constants)| wgpu::FragmentState {
                 module,

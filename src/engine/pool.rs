@@ -244,7 +244,7 @@ impl Pool {
 }
 
 fn is_input(origin: &Origin) -> bool {
-    matches!(origin, Origin::Input(_) | Origin::Attribute { .. })
+    origin.input().is_some()
 }
 
 fn describe(kind: &ObjectKind) -> Description {

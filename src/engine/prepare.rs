@@ -13,6 +13,8 @@ use super::errors;
 use super::gpu::Gpu;
 use super::join;
 use super::kernels;
+use super::materials::Materials;
+use super::meshes::{self, ByFaces};
 use super::mips;
 use super::pipeline::{Pipeline, Recipe, RecipeKind, Source, Stage};
 use super::pool::{Policy, Pool};
@@ -39,6 +41,9 @@ pub struct Runner {
     pub(super) plan: Plan,
     pub(super) pool: Pool,
     pub(super) pipelines: Vec<Option<Arc<Pipeline>>>,
+    /// Of draws of meshes.
+    pub(super) by_faces: Vec<Option<ByFaces>>,
+    pub(super) materials: Materials,
     pub(super) variants: Vec<Variants>,
     pub(super) rings_of: Vec<Vec<usize>>,
     /// For each pass the first one of the render pass that it may share.
@@ -106,7 +111,7 @@ impl Engine {
     fn build(&mut self, plan: Plan, previous: Option<&Runner>) -> Result<Runner, Diagnostics> {
         self.gpu.check()?;
         check_features(&self.gpu, &plan)?;
-        let (pipelines, compiled) = self.compiler.pipelines(&plan)?;
+        let (pipelines, by_faces, compiled) = self.compiler.pipelines(&plan)?;
         let state_kept = state_kept(&plan, previous);
         let pool = Pool::new(&self.gpu, &plan, self.policy, previous.map(|p| &p.pool), &state_kept)?;
         let uniforms = Uniforms::new(&self.gpu, &plan)?;
@@ -116,6 +121,7 @@ impl Engine {
         let leaders = join::leaders(&plan, &pool);
         let draws_joined = leaders.iter().enumerate().filter(|(pass, leader)| pass != *leader).count();
         let (rotation, done) = progress(&plan, previous, &state_kept);
+        let materials = Materials::new(&self.gpu, &plan, previous.map(|p| &p.materials));
         let Carried { changes, sources, stamps } = carry::carry(&plan, &pool, previous);
         if let Some(before) = previous {
             carry::copy_answers(&self.gpu, &plan, &fixed, before);
@@ -129,6 +135,8 @@ impl Engine {
             runs_all: previous.is_some_and(|p| p.runs_all),
             policy: self.policy,
             pipelines,
+            by_faces,
+            materials,
             variants: plan.passes.iter().map(|_| Variants::new()).collect(),
             rings_of: plan.passes.iter().map(rings_of).collect(),
             timing: Timing::new(&self.gpu, &plan),
@@ -180,7 +188,7 @@ impl Runner {
 
     /// Bytes of textures and buffers that are held now, without what others share with it.
     pub fn memory_bytes(&self) -> u64 {
-        self.pool.bytes()
+        self.pool.bytes() + self.materials.bytes()
     }
 
     /// Starts all state anew: zeroed memory, no step done.
@@ -231,7 +239,7 @@ impl Runner {
 }
 
 fn is_input(plan: &Plan, object: usize) -> bool {
-    matches!(plan.objects[object].origin, Origin::Input(_) | Origin::Attribute { .. })
+    plan.objects[object].origin.input().is_some()
 }
 
 fn check_features(gpu: &Gpu, plan: &Plan) -> Result<(), Diagnostic> {
@@ -329,9 +337,10 @@ fn draw_recipe(plan: &Plan, draw: &Draw) -> Result<Recipe, String> {
         kind: RecipeKind::Draw {
             vertex,
             fragment,
+            vertices: meshes::slots(draw),
             targets: draw.color.iter().map(|t| Some(convert::color_target(t))).collect(),
             primitive: convert::primitive(draw),
-            depth: draw.depth.as_ref().map(convert::depth_stencil),
+            depth: draw.depth.as_ref().map(convert::depth_stencil).map(Box::new),
             samples: draw.samples.max(1),
         },
     })

@@ -274,6 +274,8 @@ impl Runner {
             uniforms: &self.uniforms,
             fixed: &self.fixed,
             rotation: &self.rotation,
+            materials: &self.materials,
+            by_faces: &self.by_faces,
         };
         let pipeline = self.pipelines[index].as_deref();
         let pass = &self.plan.passes[index];

@@ -56,6 +56,10 @@ pub enum InputKind {
     },
     Buffer,
     Counted,
+    /// Bodies with triangles and materials, and values that each body has.
+    Meshes {
+        values: Vec<Param>,
+    },
 }
 
 impl InputKind {
@@ -70,9 +74,27 @@ impl InputKind {
             InputKind::Texture { .. } => "Texture",
             InputKind::Buffer => "Buffer",
             InputKind::Counted => "Counted",
+            InputKind::Meshes { .. } => "Meshes",
         }
     }
 }
+
+/// What every input of meshes has, so that no value of its bodies can be called so.
+pub const MESH_FIELDS: &[&str] = &[
+    "bodies",
+    "instances",
+    "positions",
+    "normals",
+    "tangents",
+    "uv0",
+    "uv1",
+    "color0",
+    "triangles",
+    "material",
+    "count",
+    "min",
+    "max",
+];
 
 /// An attribute that a graph wants of its particles; `"color?"` is optional.
 #[derive(Clone, Debug, PartialEq)]
@@ -297,6 +319,9 @@ pub struct Draw {
     pub instances: Option<Count>,
     pub indices: Option<Name>,
     pub indirect: Option<Indirect>,
+    pub meshes: Option<Name>,
+    /// Of `meshes`: only bodies with one of these; absent: all.
+    pub tags: Option<Vec<Name>>,
     pub topology: Topology,
     pub cull: Option<Face>,
     pub front_ccw: bool,

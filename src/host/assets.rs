@@ -7,6 +7,7 @@ use std::thread::{self, JoinHandle};
 
 use twox_hash::XxHash3_128;
 
+use super::models::Models;
 use crate::diagnostic::{Code, Diagnostic, Diagnostics, Span};
 use crate::scene::image::Image;
 use crate::scene::particles::{self, ParticleSet};
@@ -32,6 +33,7 @@ pub enum Asset {
 pub struct Cache {
     assets: BTreeMap<PathBuf, Decoded>,
     sized: BTreeMap<PathBuf, Arc<Particles>>,
+    pub(super) models: Models,
 }
 
 #[derive(Debug)]

@@ -1,18 +1,22 @@
 //! Building what was loaded on a device, aside, so that a failure leaves what was there.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 
 use wgpu_types::TextureUsages;
 
 use super::inputs::Input;
 use super::load::{COLOR, Content};
+use super::meshes::Meshes;
 use super::state::Held;
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
-use crate::engine::{Compiled, Compiler, Engine, Gpu, Runner, packing};
+use crate::engine::{Compiled, Compiler, Engine, Gpu, MaterialImage, MaterialSampler, MaterialSlots, Runner, packing};
 use crate::graph::value::Value;
 use crate::plan;
-use crate::plan::model::{Object, ObjectId, ObjectKind, ObjectRef, Origin, Plan, Texture};
+use crate::plan::meshes::MeshBuffer;
+use crate::plan::model::{Buffer, Object, ObjectId, ObjectKind, ObjectRef, Origin, Plan, Texture};
 use crate::scene::convert;
+use crate::scene::meshes::{Filter, Sampler, Wrap};
 use crate::shader::reflect::Type;
 
 /// A device, and what is built on it.
@@ -244,13 +248,23 @@ fn upload(
     let mut found = Diagnostics::new();
     for id in 0..runner.plan().objects.len() {
         let object = &runner.plan().objects[id];
-        let (Origin::Input(name) | Origin::Attribute { input: name, .. }) = &object.origin else { continue };
+        let Some(name) = object.origin.input() else { continue };
         let Some(input) = inputs.get(name) else { continue };
         let is_same = before.and_then(|b| b.get(name)).is_some_and(|b| b.is_same(input));
         if is_same && runner.keeps_input(id) {
             continue;
         }
         if let Err(error) = fill(engine, runner, id, input) {
+            found.push(error);
+        }
+    }
+    for (name, input) in inputs {
+        let Input::Meshes(meshes) = input else { continue };
+        let is_same = before.and_then(|b| b.get(name)).is_some_and(|b| b.is_same(input));
+        if runner.wants_materials(name)
+            && !(is_same && runner.has_materials(name))
+            && let Err(error) = materials(engine, runner, name, meshes)
+        {
             found.push(error);
         }
     }
@@ -270,6 +284,11 @@ fn fill(engine: &Engine, runner: &mut Runner, id: usize, input: &Input) -> Resul
             };
             runner.upload_buffer(engine, id, &bytes)
         }
+        (Origin::Mesh { buffer: which, .. }, ObjectKind::Buffer(buffer), Input::Meshes(meshes)) => {
+            let bytes = mesh_bytes(meshes, which, buffer)
+                .map_err(|why| Diagnostic::error(Code::BINDING_MISMATCH, why).at(object.span, "asked for here"))?;
+            runner.upload_buffer(engine, id, &bytes)
+        }
         (_, ObjectKind::Texture(_), Input::Image(image)) => {
             runner.upload_texture(engine, id, 0, 0, bytemuck::cast_slice(image.texels.as_flattened()))
         }
@@ -282,6 +301,78 @@ fn fill(engine: &Engine, runner: &mut Runner, id: usize, input: &Input) -> Resul
         (Origin::Input(name), ..) if name == COLOR => Ok(()),
         _ => Ok(()),
     }
+}
+
+/// What a buffer of meshes holds at time 0.
+fn mesh_bytes<'a>(meshes: &'a Meshes, which: &MeshBuffer, buffer: &Buffer) -> Result<Cow<'a, [u8]>, String> {
+    Ok(match which {
+        MeshBuffer::Bodies => meshes.bodies().into(),
+        MeshBuffer::Instances => meshes.instances(0.0).into(),
+        MeshBuffer::Vertices(attribute) => meshes.vertices(*attribute).into(),
+        MeshBuffer::Triangles => meshes.triangles().into(),
+        MeshBuffer::Value { name, default } => {
+            meshes.value(name, default.as_ref(), buffer.item.as_ref(), buffer.stride)?.into()
+        }
+        MeshBuffer::Materials => meshes.materials(buffer.item.as_ref(), buffer.stride)?.into(),
+    })
+}
+
+/// Hands over the textures of an input's materials.
+fn materials(engine: &Engine, runner: &mut Runner, name: &str, meshes: &Meshes) -> Result<(), Diagnostic> {
+    let images: Vec<MaterialImage<'_>> = meshes
+        .images
+        .iter()
+        .map(|(image, is_srgb)| MaterialImage {
+            width: image.width,
+            height: image.height,
+            is_srgb: *is_srgb,
+            texels: &image.texels,
+        })
+        .collect();
+    let slots = meshes.uses().zip(&meshes.textures).map(|(uses, images)| {
+        let mut slots = MaterialSlots::default();
+        for (slot, (used, image)) in slots.iter_mut().zip(uses.into_iter().zip(images)) {
+            *slot = used.zip(*image).map(|(used, image)| (image, material_sampler(used.sampler)));
+        }
+        slots
+    });
+    runner.upload_materials(engine, name, &images, slots.collect())
+}
+
+fn material_sampler(about: Sampler) -> MaterialSampler {
+    let wrap = |wrap| match wrap {
+        Wrap::Repeat => wgpu_types::AddressMode::Repeat,
+        Wrap::Mirror => wgpu_types::AddressMode::MirrorRepeat,
+        Wrap::Clamp => wgpu_types::AddressMode::ClampToEdge,
+    };
+    let filter = |filter| match filter {
+        Filter::Nearest => wgpu_types::FilterMode::Nearest,
+        Filter::Linear => wgpu_types::FilterMode::Linear,
+    };
+    let mip = about.mip.map(|mip| match mip {
+        Filter::Nearest => wgpu_types::MipmapFilterMode::Nearest,
+        Filter::Linear => wgpu_types::MipmapFilterMode::Linear,
+    });
+    let (wrap_u, wrap_v) = (wrap(about.wrap_u), wrap(about.wrap_v));
+    MaterialSampler { wrap_u, wrap_v, mag: filter(about.mag), min: filter(about.min), mip }
+}
+
+/// Puts what time moves where it is at a time in seconds.
+pub(super) fn move_meshes(
+    engine: &Engine,
+    runner: &mut Runner,
+    inputs: &BTreeMap<String, Input>,
+    time_s: f64,
+) -> Result<(), Diagnostic> {
+    for id in 0..runner.plan().objects.len() {
+        let Origin::Mesh { input, buffer: MeshBuffer::Instances } = &runner.plan().objects[id].origin else { continue };
+        if let Some(Input::Meshes(meshes)) = inputs.get(input)
+            && meshes.info.animated
+        {
+            runner.upload_buffer(engine, id, &meshes.instances(time_s))?;
+        }
+    }
+    Ok(())
 }
 
 /// Rows of named values as items of a struct.

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::time::Instant;
 
-use super::build::{Session, is_color};
+use super::build::{Session, is_color, move_meshes};
 use super::inputs::Input;
 use super::load::Content;
 use super::picture::{self, PictureKind, Texels};
@@ -91,6 +91,7 @@ impl Session {
         for frame in first..=moment.frame {
             let now = if frame == moment.frame { moment } else { Moment::at_frame(frame) };
             let steps = steps_until(runner.plan(), runner.steps_done(), now, first)?;
+            move_meshes(&self.engine, runner, &content.inputs, now.time_s)?;
             let frame = Frame {
                 time: now.time_s,
                 delta: 1.0 / FRAMES_PER_SECOND,

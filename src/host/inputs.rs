@@ -7,6 +7,8 @@ use std::sync::Arc;
 use wgpu_types::TextureUsages;
 
 use super::assets::{Asset, Cache, Particles, Pending, radius_m};
+use super::meshes::Meshes;
+use super::models::{MeshFiles, Reading};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::format::TextureFormat;
 use crate::graph::model::{Graph, Input as Declared, InputKind};
@@ -24,6 +26,7 @@ pub enum Input {
     Pointer,
     Particles(Arc<Particles>),
     Image(Arc<Image>),
+    Meshes(Arc<Meshes>),
     Table(Vec<BTreeMap<String, Value>>),
 }
 
@@ -44,6 +47,8 @@ pub(super) struct ParticleFile {
 pub(super) struct Offer {
     pub particles: Vec<ParticleFile>,
     pub images: Vec<(String, Option<Pending>)>,
+    pub meshes: Vec<MeshFiles>,
+    pub models: Reading,
 }
 
 /// Decoded files by the names of the inputs that they are for.
@@ -51,6 +56,7 @@ pub(super) struct Offer {
 pub(super) struct Decoded {
     particles: BTreeMap<String, Arc<Particles>>,
     images: BTreeMap<String, Arc<Image>>,
+    meshes: BTreeMap<String, Arc<Meshes>>,
     /// Names whose file has an error of its own: not missing.
     failed: Vec<String>,
 }
@@ -88,6 +94,9 @@ impl Offer {
                 _ => decoded.failed.push(name),
             }
         }
+        let (meshes, failed) = cache.models.finish(self.models, self.meshes, diagnostics);
+        decoded.meshes = meshes;
+        decoded.failed.extend(failed);
         decoded
     }
 }
@@ -141,6 +150,7 @@ fn offered(declared: &Declared, scene: &Scene, decoded: &Decoded) -> Option<Inpu
         InputKind::Particles { .. } => decoded.particles.get(name).cloned().map(Input::Particles),
         InputKind::Texture { .. } => decoded.images.get(name).cloned().map(Input::Image),
         InputKind::Table => find(&scene.tables, name).map(|item| Input::Table(item.value.clone())),
+        InputKind::Meshes { .. } => decoded.meshes.get(name).cloned().map(Input::Meshes),
         InputKind::Buffer | InputKind::Counted => None,
     }
 }
@@ -150,6 +160,7 @@ fn section(kind: &InputKind) -> Option<(&'static str, &'static str)> {
     match kind {
         InputKind::Light => Some(("light", "lights")),
         InputKind::Particles { .. } => Some(("particles", "particles")),
+        InputKind::Meshes { .. } => Some(("meshes", "meshes")),
         InputKind::Texture { .. } => Some(("texture", "textures")),
         InputKind::Table => Some(("table", "tables")),
         _ => None,
@@ -205,6 +216,7 @@ impl Input {
             Input::Camera => InputInfo::Camera,
             Input::Light(_) => InputInfo::Light,
             Input::Pointer => InputInfo::Pointer,
+            Input::Meshes(meshes) => InputInfo::Meshes(meshes.info.clone()),
             Input::Table(rows) => InputInfo::Table { rows: rows.clone() },
             Input::Image(image) => InputInfo::Texture(Texture {
                 format: TextureFormat::Rgba16Float,
@@ -258,6 +270,7 @@ impl Input {
         match (self, other) {
             (Input::Particles(a), Input::Particles(b)) => Arc::ptr_eq(a, b),
             (Input::Image(a), Input::Image(b)) => Arc::ptr_eq(a, b),
+            (Input::Meshes(a), Input::Meshes(b)) => Arc::ptr_eq(a, b),
             (Input::Table(a), Input::Table(b)) => a == b,
             _ => false,
         }

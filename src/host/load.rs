@@ -9,6 +9,7 @@ use wgpu_types::{Features, Limits};
 
 use super::assets::{AssetKind, Cache, Pending};
 use super::inputs::{self, Input, Offer, ParticleFile};
+use super::models::{MeshFiles, Reading};
 use super::params::{self, Given, Raw};
 use super::source;
 use crate::diagnostic::{Code, Diagnostic, Diagnostics, Sources, Span};
@@ -16,7 +17,7 @@ use crate::files::{self, Files, Kind};
 use crate::graph::value::Value;
 use crate::plan::model::{InputInfo, Request, Texture};
 use crate::program::{self, Program, missing_file};
-use crate::scene::{Camera, Item, Scene, framing};
+use crate::scene::{self, Camera, Item, Scene, framing};
 
 /// The graph that turns light into a picture.
 const PRESENT: &str = "parts/present.ron";
@@ -101,7 +102,9 @@ impl Loader<'_> {
         let source = source::read(self.files, &self.job.source, self.sources, &mut self.diagnostics)?;
         let scene = source.scene;
         // Files decode on other threads while the graphs are read.
-        let offer = Offer { particles: self.particles(&scene, source.particles), images: self.images(&scene) };
+        let (particles, images) = (self.particles(&scene, source.particles), self.images(&scene));
+        let (meshes, models) = self.meshes(&scene);
+        let offer = Offer { particles, images, meshes, models };
         let program = self.graph(&scene);
         let present = self.program(PRESENT, Some(&scene.path));
         let root = program.as_ref().map(|p| &*p.root);
@@ -206,6 +209,26 @@ impl Loader<'_> {
         list
     }
 
+    /// The scene's bodies, with their files being read.
+    fn meshes(&mut self, scene: &Scene) -> (Vec<MeshFiles>, Reading) {
+        let (mut all, mut reading) = (Vec::new(), Reading::default());
+        for item in &scene.meshes {
+            let mut paths = Vec::with_capacity(item.value.len());
+            for entry in &item.value {
+                let (path, bytes) = self.asset(&entry.file.value, &scene.path, entry.file.span);
+                let is_there = bytes.is_some();
+                if let Some(bytes) = bytes.filter(|_| !reading.has(&path)) {
+                    let bundle = scene::meshes::gather(self.files, &path, bytes);
+                    self.read.extend(bundle.looked_at.iter().cloned());
+                    reading.begin(&self.cache.models, bundle, entry.file.span);
+                }
+                paths.push(is_there.then_some(path));
+            }
+            all.push(MeshFiles { name: item.name.value.clone(), entries: item.value.clone(), paths });
+        }
+        (all, reading)
+    }
+
     /// A file that a scene names: its path, and its bytes if it is there.
     fn asset(&mut self, name: &str, scene: &Path, at: Span) -> (PathBuf, Option<Arc<[u8]>>) {
         match files::find(self.files, Kind::Asset, name, Some(scene)) {
@@ -259,7 +282,8 @@ impl Loader<'_> {
                     Input::Particles(particles) => Some(particles),
                     _ => None,
                 });
-                let (positions, radius) = seen.map_or_else(Default::default, |p| (p.set.positions(), p.radius_m));
+                let (positions, radius) =
+                    seen.map_or_else(|| (corners(inputs).into(), 0.0), |p| (p.set.positions(), p.radius_m));
                 framing::frame(&positions, radius, viewport, job.fov_degrees.unwrap_or(framing::FOV_DEGREES))
             }
         };
@@ -289,6 +313,17 @@ impl Loader<'_> {
         }
         found
     }
+}
+
+/// The corners of the boxes around all bodies.
+fn corners(inputs: &BTreeMap<String, Input>) -> Vec<[f32; 3]> {
+    let boxes = inputs.values().filter_map(|input| match input {
+        Input::Meshes(meshes) if meshes.info.instances > 0 => Some([meshes.info.min, meshes.info.max]),
+        _ => None,
+    });
+    boxes
+        .flat_map(|ends| (0..8).map(move |corner| [0, 1, 2].map(|axis| ends[corner >> axis & 1][axis] as f32)))
+        .collect()
 }
 
 impl Content {

@@ -11,6 +11,8 @@ pub mod dump;
 mod inputs;
 mod live;
 mod load;
+mod meshes;
+mod models;
 pub mod params;
 pub mod picture;
 mod source;

@@ -52,6 +52,10 @@ pub const POINTER: &[(&str, FieldType)] =
 pub const PARTICLES: &[(&str, FieldType)] =
     &[("count", FieldType::Int), ("radius", FieldType::Float), ("min", FieldType::Vec3), ("max", FieldType::Vec3)];
 
+/// Scalars of meshes, besides their buffers; known when planning.
+pub const MESHES: &[(&str, FieldType)] =
+    &[("count", FieldType::Int), ("min", FieldType::Vec3), ("max", FieldType::Vec3)];
+
 /// Scalars that every graph has while a frame runs.
 pub const FRAME: &[(&str, FieldType)] =
     &[("time", FieldType::Float), ("delta", FieldType::Float), ("frame", FieldType::Int), ("step", FieldType::Int)];

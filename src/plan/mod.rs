@@ -11,6 +11,7 @@ mod flow;
 mod insert;
 mod lower;
 pub mod memory;
+pub mod meshes;
 pub mod model;
 pub mod needs;
 pub mod print;

@@ -18,6 +18,7 @@ use crate::format::TextureFormat;
 use crate::graph::expr::Expr;
 use crate::graph::model::{ParamKind, Sampler};
 use crate::graph::value::Value;
+use crate::plan::meshes::MeshBuffer;
 use crate::shader::reflect::{Module, Type};
 
 mod pass;
@@ -126,6 +127,18 @@ pub enum Origin {
     Input(String),
     /// An attribute of a particle input.
     Attribute { input: String, attribute: String, present: bool },
+    /// A buffer of a mesh input; the input is empty where nothing feeds it.
+    Mesh { input: String, buffer: MeshBuffer },
+}
+
+impl Origin {
+    /// The root's input that fills it, if one does.
+    pub fn input(&self) -> Option<&str> {
+        match self {
+            Origin::Input(input) | Origin::Attribute { input, .. } | Origin::Mesh { input, .. } => Some(input),
+            Origin::Frame | Origin::State(_) => None,
+        }
+    }
 }
 
 /// An object, or a member of a ring of state that steps rotate.

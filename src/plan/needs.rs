@@ -127,9 +127,15 @@ fn of_bindings(
                     let size = super::memory::bytes(&objects[lowering.object_id(*buffer)].kind);
                     ("max_storage_buffers_per_shader_stage", Some(("max_storage_buffer_binding_size", size)))
                 }
-                Bound::Texture { .. } => ("max_sampled_textures_per_shader_stage", None),
+                Bound::Material { bytes, .. } => (
+                    "max_uniform_buffers_per_shader_stage",
+                    Some(("max_uniform_buffer_binding_size", u64::from(*bytes))),
+                ),
+                Bound::Texture { .. } | Bound::MaterialTexture { .. } => {
+                    ("max_sampled_textures_per_shader_stage", None)
+                }
                 Bound::StorageTexture { .. } => ("max_storage_textures_per_shader_stage", None),
-                Bound::Sampler { .. } => ("max_samplers_per_shader_stage", None),
+                Bound::Sampler { .. } | Bound::MaterialSampler { .. } => ("max_samplers_per_shader_stage", None),
             };
             *counts.entry(name).or_default() += 1;
             if let Some((limit, size)) = size {

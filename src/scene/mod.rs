@@ -14,5 +14,5 @@ pub mod particles;
 mod read;
 
 pub use camera::{Camera, Light};
-pub use model::{Item, ParticleSource, Scene, find};
+pub use model::{Item, MeshEntry, ParticleSource, Playing, Scene, find};
 pub use read::{DEFAULT_FOV_DEGREES, read};

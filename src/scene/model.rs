@@ -3,6 +3,8 @@
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
+use glam::DMat4;
+
 use super::camera::{Camera, Light};
 use crate::diagnostic::{FileId, Span};
 use crate::graph::value::Value;
@@ -22,6 +24,8 @@ pub struct Scene {
     pub camera: Option<Sp<Camera>>,
     pub lights: Vec<Item<Light>>,
     pub particles: Vec<Item<ParticleSource>>,
+    /// Bodies by the names of the inputs that they feed.
+    pub meshes: Vec<Item<Vec<MeshEntry>>>,
     /// Pictures by the names of the inputs they feed; `environment:` is one of them.
     pub textures: Vec<Item<Sp<String>>>,
     pub tables: Vec<Item<Vec<BTreeMap<String, Value>>>>,
@@ -50,6 +54,44 @@ pub struct ParticleSource {
     pub radius_m: Option<Sp<f64>>,
 }
 
+/// A mesh file, put where it stands: one body, or as many as there are transforms.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MeshEntry {
+    pub file: Sp<String>,
+    /// World from body, in metres.
+    pub world_from_body: Vec<DMat4>,
+    pub tags: Vec<String>,
+    /// For graphs that ask for values of bodies.
+    pub values: Vec<Item<Value>>,
+    pub playing: Playing,
+}
+
+/// What moves the nodes of a mesh file over time.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Playing {
+    Still,
+    /// An animation by name; absent: the file's first, if it has any.
+    Plays {
+        animation: Option<Sp<String>>,
+        loops: bool,
+        /// Seconds of the animation at the scene's time 0.
+        start_s: f64,
+    },
+}
+
+impl MeshEntry {
+    /// A file where it says itself that it stands.
+    pub fn of(file: Sp<String>) -> Self {
+        Self {
+            file,
+            world_from_body: vec![DMat4::IDENTITY],
+            tags: Vec::new(),
+            values: Vec::new(),
+            playing: Playing::Plays { animation: None, loops: true, start_s: 0.0 },
+        }
+    }
+}
+
 /// Finds an item by its name.
 pub fn find<'a, T>(items: &'a [Item<T>], name: &str) -> Option<&'a Item<T>> {
     items.iter().find(|item| item.name.value == name)
@@ -62,6 +104,7 @@ impl Scene {
         let particles = self.particles.iter().map(|item| ("particles", &item.name));
         let textures = self.textures.iter().map(|item| ("texture", &item.name));
         let tables = self.tables.iter().map(|item| ("table", &item.name));
-        lights.chain(particles).chain(textures).chain(tables).collect()
+        let meshes = self.meshes.iter().map(|item| ("meshes", &item.name));
+        lights.chain(particles).chain(meshes).chain(textures).chain(tables).collect()
     }
 }

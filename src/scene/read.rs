@@ -1,5 +1,7 @@
 //! Scene files from RON. All mistakes of a file are reported at once; what could be read stands.
 
+mod bodies;
+
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -18,6 +20,7 @@ const FIELDS: &[&str] = &[
     "lights",
     "environment",
     "particles",
+    "meshes",
     "tables",
     "textures",
     "params",
@@ -52,6 +55,7 @@ pub fn read(path: &Path, bytes: &[u8], sources: &mut Sources, diagnostics: &mut 
         camera: fields.get("camera").and_then(|n| reader.camera(n)),
         lights: reader.items(&fields, "lights", Reader::light),
         particles: reader.items(&fields, "particles", Reader::particles),
+        meshes: reader.items(&fields, "meshes", Reader::bodies),
         textures: reader.textures(&fields),
         tables: reader.items(&fields, "tables", Reader::table),
         params: reader.items(&fields, "params", Reader::value),
@@ -268,5 +272,5 @@ impl Reader<'_> {
 }
 
 fn article(kind: &str) -> String {
-    if kind == "particles" { kind.to_owned() } else { format!("a {kind}") }
+    if matches!(kind, "particles" | "meshes") { kind.to_owned() } else { format!("a {kind}") }
 }

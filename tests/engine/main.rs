@@ -5,6 +5,7 @@ mod compute;
 mod draw;
 mod harness;
 mod lifecycle;
+mod meshes;
 mod shipped;
 mod steps;
 mod support;
@@ -61,6 +62,13 @@ fn main() -> ExitCode {
         lifecycle::an_unknown_backend_is_told,
         lifecycle::poison_shows_holes,
         lifecycle::a_device_may_come_from_outside,
+        meshes::bodies_stand_where_the_scene_says,
+        meshes::fronts_stay_fronts,
+        meshes::tags_and_values_and_computed_bodies,
+        meshes::absent_meshes_are_no_bodies,
+        meshes::materials_are_bound_by_name,
+        meshes::animations_move_nodes,
+        meshes::what_does_not_fit_is_told,
         shipped::imai2016,
         shipped::imai2014,
     ])

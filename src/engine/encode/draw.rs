@@ -4,6 +4,7 @@ use wgpu_types as wgt;
 
 use super::{Encoding, render_pipeline};
 use crate::engine::bind::DrawVariant;
+use crate::engine::meshes;
 use crate::engine::pipeline::Pipeline;
 use crate::plan::model::{ColorTarget, DepthTarget, Draw, Geometry, Pass};
 
@@ -89,7 +90,10 @@ fn draw(render: &mut wgpu::RenderPass<'_>, part: &Part<'_>, arguments: &wgpu::Bu
     if let Some(indices) = &part.variant.indices {
         render.set_index_buffer(indices.slice(..), wgt::IndexFormat::Uint32);
     }
-    geometry(render, &part.draw.geometry, arguments);
+    match &part.variant.meshes {
+        Some(variant) => meshes::encode(render, part.draw, variant),
+        None => geometry(render, &part.draw.geometry, arguments),
+    }
 }
 
 fn geometry(render: &mut wgpu::RenderPass<'_>, geometry: &Geometry, arguments: &wgpu::Buffer) {
@@ -101,7 +105,7 @@ fn geometry(render: &mut wgpu::RenderPass<'_>, geometry: &Geometry, arguments: &
         Geometry::Indexed { count, instances, .. } if count > 0 && instances > 0 => {
             render.draw_indexed(0..count, 0, 0..instances);
         }
-        Geometry::Direct { .. } | Geometry::Indexed { .. } => {}
+        Geometry::Direct { .. } | Geometry::Indexed { .. } | Geometry::Meshes(_) => {}
         Geometry::Indirect { slot, indices: None } => render.draw_indirect(arguments, u64::from(slot) * 32),
         Geometry::Indirect { slot, indices: Some(_) } => {
             render.draw_indexed_indirect(arguments, u64::from(slot) * 32);

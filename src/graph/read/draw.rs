@@ -6,14 +6,14 @@ use super::values::{bind, expr, expr_field, exprs_of, path_field, place, tagged,
 use crate::diagnostic::{Code, Diagnostic};
 use crate::graph::expr::{Expr, ExprKind};
 use crate::graph::model::{
-    Blend, BlendComponent, Compare, Count, Depth, Draw, Face, Factor, Indirect, Operation, Stencil, StencilOperation,
-    Target, Topology,
+    Blend, BlendComponent, Compare, Count, Depth, Draw, Face, Factor, Indirect, Name, Operation, Stencil,
+    StencilOperation, Target, Topology,
 };
 use crate::graph::value::Value;
 use crate::syntax::{Decoder, Fields, Kind, Node, Sp, Tagged};
 
 const COMMON: &[&str] = &["shader", "color", "depth", "samples", "region", "name", "bind"];
-const GEOMETRY: &[&str] = &["vertices", "instances", "indices", "draw", "topology", "cull", "front"];
+const GEOMETRY: &[&str] = &["vertices", "instances", "indices", "draw", "meshes", "tags", "topology", "cull", "front"];
 
 const TOPOLOGIES: &[(&str, Topology)] = &[
     ("PointList", Topology::PointList),
@@ -58,8 +58,7 @@ const STENCIL_OPERATIONS: &[(&str, StencilOperation)] = &[
 /// A `Draw`, or a `Fullscreen`, which has no geometry.
 pub(super) fn draw(d: &mut Decoder<'_>, tag: &Tagged, has_geometry: bool) -> Option<Draw> {
     let owner = if has_geometry { "`Draw`" } else { "`Fullscreen`" };
-    let unsupported: &[&str] = if tag.has("meshes") { &["meshes"] } else { &[] };
-    let known = if has_geometry { [COMMON, GEOMETRY, unsupported].concat() } else { COMMON.to_vec() };
+    let known = if has_geometry { [COMMON, GEOMETRY].concat() } else { COMMON.to_vec() };
     let fields = d.body_fields(tag, owner, &known)?;
     let geometry = if has_geometry { geometry(d, &fields) } else { Geometry::default() };
     let color = fields.get("color").map(|node| targets(d, node, owner)).unwrap_or_default();
@@ -75,6 +74,8 @@ pub(super) fn draw(d: &mut Decoder<'_>, tag: &Tagged, has_geometry: bool) -> Opt
         instances: geometry.instances,
         indices: geometry.indices,
         indirect: geometry.indirect,
+        meshes: geometry.meshes,
+        tags: geometry.tags,
         topology: geometry.topology.unwrap_or(Topology::TriangleList),
         cull: geometry.cull,
         front_ccw: !geometry.is_clockwise,
@@ -91,8 +92,10 @@ pub(super) fn draw(d: &mut Decoder<'_>, tag: &Tagged, has_geometry: bool) -> Opt
 struct Geometry {
     vertices: Option<Count>,
     instances: Option<Count>,
-    indices: Option<crate::graph::model::Name>,
+    indices: Option<Name>,
     indirect: Option<Indirect>,
+    meshes: Option<Name>,
+    tags: Option<Vec<Name>>,
     topology: Option<Topology>,
     cull: Option<Face>,
     is_clockwise: bool,
@@ -101,20 +104,17 @@ struct Geometry {
 fn geometry(d: &mut Decoder<'_>, fields: &Fields<'_>) -> Geometry {
     const FACES: &[(&str, Option<Face>)] = &[("None", None), ("Front", Some(Face::Front)), ("Back", Some(Face::Back))];
     const FRONTS: &[(&str, bool)] = &[("Ccw", false), ("Cw", true)];
-    if let Some((name, _)) = fields.entry("meshes") {
-        let message = "`meshes` of `Draw` is not supported yet";
+    if fields.lacks(&["vertices", "draw", "indices", "meshes"]) {
         d.push(
-            Diagnostic::error(Code::UNKNOWN_FIELD, message)
-                .at(name.span, "not supported yet")
-                .hint("draw with `vertices`, `instances` and `indices`"),
-        );
-    } else if fields.lacks(&["vertices", "draw", "indices"]) {
-        d.push(
-            Diagnostic::error(Code::MISSING_FIELD, "`Draw` lacks the field `vertices`, `indices` or `draw`")
+            Diagnostic::error(Code::MISSING_FIELD, "`Draw` lacks the field `vertices`, `indices`, `draw` or `meshes`")
                 .at(fields.head, "how many vertices?")
-                .hint("`vertices: 4`, `vertices: Each(\"x\")`, `indices: \"x\"` or `draw: Indirect(buffer: \"x\")`"),
+                .hint(
+                    "`vertices: 4`, `vertices: Each(\"x\")`, `indices: \"x\"`, `draw: Indirect(buffer: \"x\")` or \
+                     `meshes: \"x\"`",
+                ),
         );
     }
+    beside_meshes(d, fields);
     if let Some((name, node)) = fields.entry("draw") {
         for other in ["vertices", "instances"] {
             if let Some((given, _)) = fields.entry(other)
@@ -135,6 +135,8 @@ fn geometry(d: &mut Decoder<'_>, fields: &Fields<'_>) -> Geometry {
         instances: fields.get("instances").and_then(|node| count(d, node, &place(fields, "instances"))),
         indices: path_field(d, fields, "indices"),
         indirect: fields.get("draw").and_then(|node| indirect(d, node)),
+        meshes: path_field(d, fields, "meshes"),
+        tags: fields.get("tags").and_then(|node| tags(d, node, &place(fields, "tags"))),
         topology: fields.get("topology").and_then(|node| d.choice(node, &place(fields, "topology"), TOPOLOGIES)),
         cull: fields.get("cull").and_then(|node| d.choice(node, &place(fields, "cull"), FACES)).flatten(),
         is_clockwise: fields
@@ -142,6 +144,30 @@ fn geometry(d: &mut Decoder<'_>, fields: &Fields<'_>) -> Geometry {
             .and_then(|node| d.choice(node, &place(fields, "front"), FRONTS))
             .unwrap_or(false),
     }
+}
+
+/// Meshes bring their own vertices, triangles and instances.
+fn beside_meshes(d: &mut Decoder<'_>, fields: &Fields<'_>) {
+    let fault = match (fields.entry("meshes"), fields.entry("tags")) {
+        (Some((meshes, _)), _) => {
+            let others = ["vertices", "instances", "indices", "draw", "topology"];
+            let Some((name, (other, _))) = others.iter().find_map(|o| Some((o, fields.entry(o)?))) else { return };
+            Diagnostic::error(Code::BAD_PASS, format!("`Draw` has both `meshes` and `{name}`"))
+                .at(other.span, "not beside `meshes`")
+                .see(meshes.span, "draws the triangles of meshes")
+                .hint(format!("leave `{name}` out: meshes are triangles, as many as there are"))
+        }
+        (None, Some((tags, _))) => Diagnostic::error(Code::BAD_PASS, "`tags` says which meshes are drawn")
+            .at(tags.span, "without `meshes`")
+            .hint("say `meshes: \"...\"`"),
+        (None, None) => return,
+    };
+    d.push(fault);
+}
+
+fn tags(d: &mut Decoder<'_>, node: &Node, what: &str) -> Option<Vec<Name>> {
+    let all: Vec<Option<Name>> = d.list(node, what)?.iter().map(|item| d.text(item, what)).collect();
+    all.into_iter().collect()
 }
 
 fn count(d: &mut Decoder<'_>, node: &Node, what: &str) -> Option<Count> {

@@ -1,11 +1,12 @@
 //! `inputs:`.
 
-use super::values::{Named, is_identifier, tagged};
+use super::params;
+use super::values::{Named, is_identifier, named, tagged};
 use crate::diagnostic::{Code, Diagnostic};
-use crate::graph::model::{Attribute, Input, InputKind, ViewDimension};
+use crate::graph::model::{Attribute, Input, InputKind, MESH_FIELDS, Param, ParamKind, ViewDimension};
 use crate::syntax::{Decoder, Fields, Node};
 
-const KINDS: &[&str] = &["Camera", "Light", "Pointer", "Particles", "Table", "Texture", "Buffer", "Counted"];
+const KINDS: &[&str] = &["Camera", "Light", "Pointer", "Particles", "Meshes", "Table", "Texture", "Buffer", "Counted"];
 
 const DIMENSIONS: &[(&str, ViewDimension)] = &[
     ("D2", ViewDimension::D2),
@@ -41,29 +42,36 @@ pub(super) fn input(d: &mut Decoder<'_>, entry: &Named<'_>) -> Option<Input> {
         "Counted" => InputKind::Counted,
         "Particles" => InputKind::Particles { attributes: attributes(d, &fields) },
         "Texture" => InputKind::Texture { dimension: dimension(d, &fields) },
-        _ => {
-            meshes(d, entry, tag.head, optional);
-            return None;
-        }
+        _ => InputKind::Meshes { values: values(d, &fields) },
     };
     Some(Input { name: entry.name.clone(), kind, optional, span: entry.name.span.to(entry.node.span) })
 }
 
-/// Meshes come later: an optional input is taken as absent, others cannot be had.
-fn meshes(d: &mut Decoder<'_>, entry: &Named<'_>, span: crate::diagnostic::Span, optional: bool) {
-    let name = &entry.name.value;
-    let diagnostic = if optional {
-        Diagnostic::warning(
-            Code::UNKNOWN_VARIANT,
-            format!("`Meshes` inputs are not supported yet: `{name}` is taken as absent"),
-        )
-    } else {
-        Diagnostic::error(
-            Code::UNKNOWN_VARIANT,
-            format!("`Meshes` inputs are not supported yet: `{name}` cannot be had"),
-        )
-    };
-    d.push(diagnostic.at(span, "not supported yet"));
+/// What each body has, declared as parameters are.
+fn values(d: &mut Decoder<'_>, fields: &Fields<'_>) -> Vec<Param> {
+    let Some(node) = fields.get("values") else { return Vec::new() };
+    let mut out = Vec::new();
+    for entry in named(d, node, "`values` of `Meshes`") {
+        if !is_identifier(&entry.name.value) || MESH_FIELDS.contains(&entry.name.value.as_str()) {
+            let message = format!("a value of bodies cannot be called `{}`", entry.name.value);
+            let diagnostic = Diagnostic::error(Code::BAD_NAME, message)
+                .at(entry.name.span, "this name")
+                .hint("a name has letters, digits and `_`, and is none that meshes have already, such as `bodies`");
+            d.push(diagnostic);
+            continue;
+        }
+        let Some(param) = params::param(d, &entry) else { continue };
+        if let ParamKind::Choice(_) = param.kind {
+            let message = format!("the value `{}` of bodies cannot be a `Choice`", param.name.value);
+            let diagnostic = Diagnostic::error(Code::WRONG_VALUE, message)
+                .at(param.span, "a word is no number")
+                .hint("declare an `Int`");
+            d.push(diagnostic);
+            continue;
+        }
+        out.push(param);
+    }
+    out
 }
 
 fn attributes(d: &mut Decoder<'_>, fields: &Fields<'_>) -> Vec<Attribute> {

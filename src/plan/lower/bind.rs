@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use wgpu_types::ShaderStages;
 
+use super::meshes::MeshInput;
 use super::names::Entity;
 use super::nodes::Draft;
 use super::view::Viewed;
@@ -22,6 +23,8 @@ pub(super) struct Stages {
     pub entries: Vec<(ShaderStages, Entry)>,
     /// The pass, for labels.
     pub at: Span,
+    /// The mesh input whose materials it is drawn with.
+    pub meshes: Option<MeshInput>,
 }
 
 /// One variable of a shader as a pass uses it.
@@ -143,6 +146,12 @@ impl Lowering<'_> {
         draft: &mut Draft,
     ) -> Result<Bound> {
         let global = wanted.global;
+        if let Some(meshes) = stages.meshes.as_ref().filter(|_| place_of(bind, &global.name).is_none()) {
+            let place = Feed { stages, bind, wanted, at: stages.at };
+            if let Some(bound) = self.feed_material(s, meshes, &place, draft)? {
+                return Ok(bound);
+            }
+        }
         let found = self.bound_entity(s, global, bind)?;
         let place = Feed { stages, bind, wanted, at: place_of(bind, &global.name).unwrap_or(stages.at) };
         match &global.kind {

@@ -26,10 +26,10 @@ impl Lowering<'_> {
         }
         self.agree(s, place, object, ty)?;
         let used = place.wanted.used;
-        if used.write
-            && !matches!(self.object(object).object.origin, Origin::Frame | Origin::State(_))
-            && !self.stand_in
-        {
+        let origin = &self.object(object).object.origin;
+        // A part by itself may write buffers that its user gives; nobody gives meshes to write.
+        let may_be_given = self.stand_in && !matches!(origin, Origin::Mesh { .. });
+        if used.write && !matches!(origin, Origin::Frame | Origin::State(_)) && !may_be_given {
             return Err(self.writes_input(s, place, object));
         }
         for id in self.object_ids(object) {
@@ -69,6 +69,9 @@ impl Lowering<'_> {
         if let Origin::Attribute { attribute, input, .. } = &building.object.origin {
             let components = self.attribute_components(input, attribute);
             layout = self.attribute_layout(s, place, layout, components)?;
+        }
+        if let Origin::Mesh { buffer, .. } = &building.object.origin {
+            self.mesh_layout(s, place, buffer, &building.object.path, &layout)?;
         }
         if let Some(first) = &building.layout
             && !(first.header == layout.header && first.stride == layout.stride && same_type(&first.item, &layout.item))

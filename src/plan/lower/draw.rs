@@ -23,9 +23,13 @@ impl Lowering<'_> {
         let vertex = if fullscreen { None } else { self.entry(s, &module, &draw.shader, Stage::Vertex, true)? };
         let fragment = self.entry(s, &module, &draw.shader, Stage::Fragment, fullscreen)?;
         let mut entries = Vec::new();
-        entries.extend(vertex.map(|e| (ShaderStages::VERTEX, e)));
+        entries.extend(vertex.clone().map(|e| (ShaderStages::VERTEX, e)));
         entries.extend(fragment.clone().map(|e| (ShaderStages::FRAGMENT, e)));
-        let stages = Stages { module, entries, at: node.word };
+        let meshes = match &draw.meshes {
+            Some(name) => Some(self.mesh_input(s, name)?),
+            None => None,
+        };
+        let stages = Stages { module, entries, at: node.word, meshes };
         self.check_interface(s, &stages, fullscreen)?;
 
         let placeholder =
@@ -35,7 +39,11 @@ impl Lowering<'_> {
             dispatch: crate::plan::model::Dispatch::Groups([0; 3]),
         });
         let shader = self.feed(s, &stages, &draw.bind, &mut draft);
-        let geometry = if fullscreen { Geometry::Fullscreen } else { self.geometry(s, draw, node.word, &mut draft)? };
+        let geometry = match &stages.meshes {
+            _ if fullscreen => Geometry::Fullscreen,
+            Some(meshes) => self.mesh_geometry(s, meshes, draw, vertex.as_ref(), &stages, &mut draft)?,
+            None => self.geometry(s, draw, node.word, &mut draft)?,
+        };
         let covers = fullscreen && draw.region.is_none() && !fragment.as_ref().is_some_and(|f| f.discards);
         let color = self.targets(s, draw, fragment.as_ref(), covers, node.word, &mut draft);
         let depth = self.depth(s, draw, fragment.as_ref(), node.word, &mut draft);
@@ -96,13 +104,13 @@ impl Lowering<'_> {
             }
             return Err(traced(diagnostic.see(stages.at, "run by this pass"), &self.scopes[s].trace));
         }
-        match vertex.filter(|v| !v.inputs.is_empty()) {
+        match vertex.filter(|v| !v.inputs.is_empty() && stages.meshes.is_none()) {
             Some(vertex) => {
                 let io = &vertex.inputs[0];
                 let message = format!("nothing feeds the vertex input `{}`", io.name);
                 let diagnostic = fault(Code::UNBOUND, message, io.span, "vertex input")
                     .see(stages.at, "run by this pass")
-                    .hint("vertices come from `@builtin(vertex_index)` and storage buffers");
+                    .hint("`Draw(meshes: ...)` has vertex inputs; here vertices come from `@builtin(vertex_index)` and storage buffers");
                 Err(traced(diagnostic, &self.scopes[s].trace))
             }
             None => Ok(()),

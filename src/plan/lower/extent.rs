@@ -28,7 +28,8 @@ impl Lowering<'_> {
         let module = self.shader_module(s, &compute.shader)?;
         let entry = self.entry(s, &module, &compute.shader, Stage::Compute, true)?;
         let Some(entry) = entry else { unreachable!("a required entry point is an error if it is missing") };
-        let stages = Stages { module, entries: vec![(ShaderStages::COMPUTE, entry.clone())], at: node.word };
+        let stages =
+            Stages { module, entries: vec![(ShaderStages::COMPUTE, entry.clone())], at: node.word, meshes: None };
         let mut draft = Draft::new(PassKind::Compute {
             shader: ShaderUse {
                 module: 0,

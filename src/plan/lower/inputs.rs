@@ -4,9 +4,10 @@ use super::names::{Entity, list, live};
 use super::vars::{buffer, stand_in_texture};
 use super::{Building, Lowering, Result, Scalar, ScopeId, VarId, fault, traced};
 use crate::diagnostic::{Code, Diagnostic, Span};
-use crate::graph::model::{Attribute, InputKind, ViewDimension};
+use crate::graph::model::{Attribute, Input, InputKind, Param, ViewDimension};
 use crate::graph::value::Value;
 use crate::plan::fields;
+use crate::plan::meshes::MeshBuffer;
 use crate::plan::model::{Causes, InputInfo, Object, ObjectKind, Origin, Texture, UniformValue};
 
 impl Lowering<'_> {
@@ -30,6 +31,13 @@ impl Lowering<'_> {
             },
         };
         match (outer, field) {
+            // Absent meshes are no bodies.
+            (Entity::Absent, field) if matches!(input.kind, InputKind::Meshes { .. }) => {
+                self.mesh_thing(s, "", values(&input.kind), field, span)
+            }
+            (Entity::Input { root, kind: InputKind::Meshes { .. } }, Some(field)) => {
+                self.mesh_thing(s, &root, values(&input.kind), Some(field), span)
+            }
             (entity, None) => Ok(entity),
             (Entity::Input { root, .. }, Some(field)) => {
                 let root_graph = self.program.root.clone();
@@ -104,6 +112,14 @@ impl Lowering<'_> {
         self.used.insert(input.name.span);
         let name = input.name.value.clone();
         let info = self.request.inputs.get(&name).cloned();
+        if let InputKind::Meshes { values } = &input.kind
+            && (info.is_some() || input.optional)
+        {
+            return match info {
+                Some(InputInfo::Meshes(_)) | None => self.mesh_thing(s, &name, values, field, span),
+                Some(_) => Err(self.wrongly_fed(&name, input)),
+            };
+        }
         if info.is_none() && (input.optional || !self.stand_in) {
             return match (input.optional, field) {
                 (true, None) => Ok(Entity::Absent),
@@ -142,6 +158,11 @@ impl Lowering<'_> {
         traced(diagnostic, &self.scopes[s].trace)
     }
 
+    fn wrongly_fed(&self, name: &str, input: &Input) -> Box<Diagnostic> {
+        let message = format!("the input `{name}` wants {}, and is fed something else", wanted(&input.kind));
+        Box::new(fault(Code::WRONG_KIND, message, input.name.span, "declared here"))
+    }
+
     fn particles(
         &mut self,
         s: ScopeId,
@@ -158,8 +179,7 @@ impl Lowering<'_> {
             if info.is_none() {
                 return Err(self.missing_input(0, i));
             }
-            let message = format!("the input `{name}` wants Particles, and is fed something else");
-            return Err(Box::new(fault(Code::WRONG_KIND, message, input.name.span, "declared here")));
+            return Err(self.wrongly_fed(&name, input));
         };
         let Some(field) = field else { return Ok(Entity::Input { root: name, kind: input.kind.clone() }) };
         let value = match field {
@@ -208,10 +228,7 @@ impl Lowering<'_> {
             }
             (InputKind::Table, Some(InputInfo::Table { rows })) => buffer(rows.len() as u64, false),
             (InputKind::Buffer | InputKind::Counted | InputKind::Table, None) if self.stand_in => buffer(1000, counted),
-            (kind, Some(_)) => {
-                let message = format!("the input `{name}` wants {}, and is fed something else", wanted(kind));
-                return Err(Box::new(fault(Code::WRONG_KIND, message, input.name.span, "declared here")));
-            }
+            (_, Some(_)) => return Err(self.wrongly_fed(name, input)),
             (_, None) => return Err(self.missing_input(0, i)),
         };
         let causes = Causes { inputs: [name.to_owned()].into(), ..Causes::default() };
@@ -272,7 +289,7 @@ impl Lowering<'_> {
             if self.scopes[s].parent.is_none() {
                 continue;
             }
-            if matches!(entity, Entity::Absent) && !input.optional {
+            if self.is_absent(&entity) && !input.optional {
                 all_fit = false;
                 let diagnostic = self.absent_fed(s, i);
                 self.diagnostics.push(diagnostic);
@@ -310,6 +327,7 @@ impl Lowering<'_> {
             (InputKind::Camera, Entity::Input { kind: InputKind::Camera, .. }, _)
             | (InputKind::Light, Entity::Input { kind: InputKind::Light, .. }, _)
             | (InputKind::Pointer, Entity::Input { kind: InputKind::Pointer, .. }, _)
+            | (InputKind::Meshes { .. }, Entity::Input { kind: InputKind::Meshes { .. }, .. }, _)
             | (InputKind::Particles { .. }, Entity::Input { kind: InputKind::Particles { .. }, .. }, _) => true,
             // A camera or light that a shader wrote.
             (InputKind::Camera | InputKind::Light, Entity::Var(_), Some(ObjectKind::Buffer(b))) => !b.counted,
@@ -325,14 +343,29 @@ impl Lowering<'_> {
 
 /// The fields of an input of a kind: what follows its name and a dot.
 pub(crate) fn input_fields(kind: &InputKind) -> impl Iterator<Item = &str> {
+    let buffers: &[(&str, MeshBuffer)] = match kind {
+        InputKind::Meshes { .. } => &MeshBuffer::NAMED,
+        _ => &[],
+    };
+    let of_meshes = buffers.iter().map(|(name, _)| *name).chain(values(kind).iter().map(|v| v.name.value.as_str()));
     let (table, attributes): (&[(&str, fields::FieldType)], &[Attribute]) = match kind {
         InputKind::Camera => (fields::CAMERA, &[]),
         InputKind::Light => (fields::LIGHT, &[]),
         InputKind::Pointer => (fields::POINTER, &[]),
         InputKind::Particles { attributes } => (fields::PARTICLES, attributes),
+        InputKind::Meshes { .. } => (fields::MESHES, &[]),
         _ => (&[], &[]),
     };
-    table.iter().map(|(name, _)| *name).chain(attributes.iter().map(|a| a.name.value.as_str()))
+    let names = table.iter().map(|(name, _)| *name).chain(attributes.iter().map(|a| a.name.value.as_str()));
+    names.chain(of_meshes)
+}
+
+/// What an input of meshes wants of each body.
+fn values(kind: &InputKind) -> &[Param] {
+    match kind {
+        InputKind::Meshes { values } => values,
+        _ => &[],
+    }
 }
 
 fn attributes(kind: &InputKind) -> &[Attribute] {
@@ -355,7 +388,7 @@ fn wanted(kind: &InputKind) -> String {
         _ => "",
     };
     match kind {
-        InputKind::Particles { .. } => "Particles".to_owned(),
+        InputKind::Particles { .. } | InputKind::Meshes { .. } => kind.name().to_owned(),
         other => format!("a {dimension}{}", other.name()),
     }
 }

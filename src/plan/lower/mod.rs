@@ -10,6 +10,7 @@ mod buffers;
 mod draw;
 mod extent;
 mod inputs;
+mod meshes;
 mod names;
 mod nodes;
 mod scalars;

@@ -58,6 +58,7 @@ impl Entity {
                 InputKind::Light => "a light",
                 InputKind::Pointer => "a pointer",
                 InputKind::Particles { .. } => "particles",
+                InputKind::Meshes { .. } => "meshes",
                 _ => "an input",
             },
             Entity::Absent => "an optional input that is absent",

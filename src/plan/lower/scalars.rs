@@ -323,7 +323,7 @@ impl<'p> Lowering<'p> {
         };
         self.used.insert(input.name.span);
         let there = match self.resolve(s, path, span) {
-            Ok(Entity::Absent) => false,
+            Ok(entity) if self.is_absent(&entity) => false,
             Ok(Entity::Var(var)) => {
                 let origin = &self.object(self.vars[var].now).object.origin;
                 !matches!(origin, model::Origin::Attribute { present: false, .. })

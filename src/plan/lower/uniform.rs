@@ -12,6 +12,7 @@ use crate::graph::expr::ExprKind;
 use crate::graph::model::{self as ast, Name};
 use crate::graph::value::Value;
 use crate::plan::fields::{self, FieldType};
+use crate::plan::meshes::MATERIAL;
 use crate::plan::model::{Access, Bound, ObjectKind, Param, UniformBlock, UniformMember, UniformValue};
 use crate::shader::reflect::{self, Member, Type};
 
@@ -116,7 +117,7 @@ impl Lowering<'_> {
     fn named(&mut self, s: ScopeId, prefix: &Prefix, member: &Member, at: Span) -> Result<Option<(String, Scalar)>> {
         match prefix {
             Prefix::Input { root, kind } if input_fields(kind).any(|field| field == member.name) => {
-                if !matches!(kind, ast::InputKind::Particles { .. }) {
+                if !matches!(kind, ast::InputKind::Particles { .. } | ast::InputKind::Meshes { .. }) {
                     return Ok(Some((String::new(), self.live_field(root, &member.name, member.span))));
                 }
                 if let Entity::Scalar(scalar) = self.resolve(0, &format!("{root}.{}", member.name), member.span)? {
@@ -155,6 +156,9 @@ impl Lowering<'_> {
         let mut diagnostic = fault(Code::UNBOUND, message, member.span, "the member")
             .see(place.stages.at, "run by this pass")
             .nearest(&member.name, names.iter().map(String::as_str));
+        if MATERIAL.iter().any(|(name, _)| *name == member.name) {
+            diagnostic = diagnostic.hint("materials are there in a `Draw(meshes: ...)`, as `var<uniform> material`");
+        }
         diagnostic = match prefix {
             Prefix::Input { kind, .. } => {
                 diagnostic.hint(format!("a {} has {}", kind.name(), super::names::list(&names)))

@@ -8,6 +8,7 @@ use super::ObjectRef;
 use crate::diagnostic::Span;
 use crate::format::{SampleKind, TextureFormat};
 use crate::graph::model::{Blend, Compare, Face, StencilOperation, Topology};
+use crate::plan::meshes::{MaterialTexture, MeshGeometry};
 use crate::shader::reflect::TextureDimension;
 
 #[derive(Clone, Debug, PartialEq)]
@@ -138,6 +139,21 @@ pub enum Bound {
     Sampler {
         sampler: usize,
     },
+    /// The factors of the material that is drawn: so many bytes of its item of a buffer.
+    Material {
+        buffer: ObjectRef,
+        bytes: u32,
+    },
+    /// A texture of the material that is drawn.
+    MaterialTexture {
+        input: String,
+        texture: MaterialTexture,
+    },
+    /// The sampler that goes with it.
+    MaterialSampler {
+        input: String,
+        texture: MaterialTexture,
+    },
 }
 
 /// A part of an object. For buffers the ranges are `0..1`.
@@ -183,6 +199,21 @@ pub enum Geometry {
         slot: u32,
         indices: Option<ObjectRef>,
     },
+    /// The triangles of a mesh input.
+    Meshes(MeshGeometry),
+}
+
+impl Geometry {
+    /// The buffers that the draw takes vertices and indices from.
+    pub fn buffers(&self) -> Vec<ObjectRef> {
+        match self {
+            Geometry::Fullscreen | Geometry::Direct { .. } | Geometry::Indirect { indices: None, .. } => Vec::new(),
+            Geometry::Indexed { indices, .. } | Geometry::Indirect { indices: Some(indices), .. } => vec![*indices],
+            Geometry::Meshes(meshes) => {
+                meshes.vertices.iter().filter_map(|v| v.buffer).chain([meshes.indices]).collect()
+            }
+        }
+    }
 }
 
 #[derive(Clone, Debug, PartialEq)]
@@ -238,9 +269,14 @@ pub fn each_ref(kind: &mut PassKind, visit: &mut dyn FnMut(&mut ObjectRef)) {
     fn shader(shader: &mut ShaderUse, visit: &mut dyn FnMut(&mut ObjectRef)) {
         for binding in &mut shader.bindings {
             match &mut binding.bound {
-                Bound::UniformBuffer { buffer } | Bound::Storage { buffer, .. } => visit(buffer),
+                Bound::UniformBuffer { buffer } | Bound::Storage { buffer, .. } | Bound::Material { buffer, .. } => {
+                    visit(buffer);
+                }
                 Bound::Texture { view, .. } | Bound::StorageTexture { view, .. } => visit(&mut view.object),
-                Bound::Uniform { .. } | Bound::Sampler { .. } => {}
+                Bound::Uniform { .. }
+                | Bound::Sampler { .. }
+                | Bound::MaterialTexture { .. }
+                | Bound::MaterialSampler { .. } => {}
             }
         }
     }
@@ -250,6 +286,7 @@ pub fn each_ref(kind: &mut PassKind, visit: &mut dyn FnMut(&mut ObjectRef)) {
             shader(&mut draw.shader, visit);
             match &mut draw.geometry {
                 Geometry::Indexed { indices, .. } | Geometry::Indirect { indices: Some(indices), .. } => visit(indices),
+                // What inputs fill is never swapped.
                 _ => {}
             }
             for target in &mut draw.color {

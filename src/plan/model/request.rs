@@ -6,6 +6,7 @@ use wgpu_types::{Features, Limits};
 
 use super::Texture;
 use crate::graph::value::Value;
+use crate::plan::meshes::MeshesInfo;
 
 /// Everything that planning needs to know from outside the graph.
 #[derive(Clone, Debug)]
@@ -46,4 +47,5 @@ pub enum InputInfo {
     Table {
         rows: Vec<BTreeMap<String, Value>>,
     },
+    Meshes(MeshesInfo),
 }

@@ -84,6 +84,13 @@ fn draw_line(draw: &Draw) -> String {
         Geometry::Direct { vertices, instances } => format!("draw {vertices} vertices, {instances} instances"),
         Geometry::Indexed { count, instances, .. } => format!("draw {count} indices, {instances} instances"),
         Geometry::Indirect { slot, .. } => format!("draw indirect #{slot}"),
+        Geometry::Meshes(meshes) => {
+            let calls = match meshes.draws.len() {
+                1 => "1 call".to_owned(),
+                n => format!("{n} calls"),
+            };
+            format!("draw {} triangles of meshes in {calls}", meshes.triangles())
+        }
     };
     let [w, h] = draw.extent;
     let samples = if draw.samples > 1 { format!(", {} samples", draw.samples) } else { String::new() };

@@ -24,7 +24,7 @@ pub fn dot(plan: &Plan) -> String {
     }
     for id in &used {
         let path = &plan.objects[*id].path;
-        let is_input = matches!(plan.objects[*id].origin, Origin::Input(_) | Origin::Attribute { .. });
+        let is_input = plan.objects[*id].origin.input().is_some();
         let scope = if is_input { "" } else { path.rsplit_once('.').map_or("", |(scope, _)| scope) };
         parts.at(scope).lines.push(resource(plan, *id));
     }
@@ -79,10 +79,14 @@ fn resource(plan: &Plan, id: ObjectId) -> String {
         _ if is_output => "#f6d9a8",
         Origin::Frame => "#f4f4ee",
         Origin::State(_) => "#e6daf2",
-        Origin::Input(_) | Origin::Attribute { .. } => "#d9ecd9",
+        Origin::Input(_) | Origin::Attribute { .. } | Origin::Mesh { .. } => "#d9ecd9",
     };
     let name = object.path.rsplit('.').next().unwrap_or(&object.path);
-    let name = if matches!(object.origin, Origin::Attribute { .. }) { object.path.as_str() } else { name };
+    let name = if matches!(object.origin, Origin::Attribute { .. } | Origin::Mesh { .. }) {
+        object.path.as_str()
+    } else {
+        name
+    };
     let label = quoted(&format!("{name}\n{}", describe::object(object)));
     let edge = if is_output { ", penwidth=2" } else { "" };
     format!("r{id} [shape=box, style=\"rounded,filled\", fillcolor=\"{fill}\"{edge}, label={label}];")

@@ -175,6 +175,27 @@ fn draw_kind(plan: &Plan, draw: &Draw) -> Json {
             "slot": slot,
             "indices": indices.map(|object| reference(plan, object)),
         }),
+        Geometry::Meshes(meshes) => json!({
+            "kind": "meshes",
+            "input": meshes.input,
+            "indices": reference(plan, meshes.indices),
+            "vertices": meshes.vertices.iter().map(|v| json!({
+                "location": v.location,
+                "attribute": v.attribute.name(),
+                "buffer": v.buffer.map(|object| reference(plan, object)),
+            })).collect::<Vec<_>>(),
+            "draws": meshes.draws.iter().map(|d| json!({
+                "first_index": d.first_index,
+                "indices": d.indices,
+                "first_instance": d.first_instance,
+                "instances": d.instances,
+                "material": d.material,
+                "double_sided": d.faces.double_sided,
+                "mirrored": d.faces.mirrored,
+                "blended": d.blended,
+                "tags": d.tags,
+            })).collect::<Vec<_>>(),
+        }),
     };
     let color = |target: &crate::plan::model::ColorTarget| {
         json!({
@@ -245,6 +266,15 @@ fn binding(plan: &Plan, binding: &Binding) -> Json {
         Bound::Sampler { sampler } => {
             json!({ "kind": "sampler", "sampler": plan.samplers.get(*sampler).map(|s| s.name.value.clone()) })
         }
+        Bound::Material { buffer, bytes } => {
+            json!({ "kind": "material", "resource": reference(plan, *buffer), "bytes": bytes })
+        }
+        Bound::MaterialTexture { input, texture } => {
+            json!({ "kind": "material texture", "input": input, "texture": texture.stem() })
+        }
+        Bound::MaterialSampler { input, texture } => {
+            json!({ "kind": "material sampler", "input": input, "texture": texture.stem() })
+        }
     };
     json!({ "name": binding.name, "binding": binding.binding, "bound": bound })
 }
@@ -287,6 +317,7 @@ fn resource(plan: &Plan, id: usize, object: &Object) -> Json {
         Origin::Attribute { input, attribute, present } => {
             json!({ "kind": "attribute", "input": input, "attribute": attribute, "present": present })
         }
+        Origin::Mesh { input, buffer } => json!({ "kind": "mesh", "input": input, "buffer": buffer.name() }),
     };
     let slot = |slots: &[Slot]| slots.iter().position(|slot| slot.objects.contains(&id));
     json!({

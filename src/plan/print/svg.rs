@@ -194,7 +194,7 @@ fn bar(plan: &Plan, layout: &Layout, y: usize, id: ObjectId, shares: bool, out: 
     let fill = match &object.origin {
         _ if is_output => "#f2b134",
         Origin::State(_) => "#b48fd6",
-        Origin::Input(_) | Origin::Attribute { .. } => "#9ccf9c",
+        Origin::Input(_) | Origin::Attribute { .. } | Origin::Mesh { .. } => "#9ccf9c",
         Origin::Frame if shares => "#6fb7c9",
         Origin::Frame => "#a9bdd3",
     };

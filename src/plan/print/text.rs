@@ -246,6 +246,8 @@ fn notes(plan: &Plan, id: ObjectId, shared: Option<&String>) -> Vec<String> {
             let absent = if *present { "" } else { " (absent: zeros)" };
             notes.push(format!("attribute of {input}{absent}"));
         }
+        Origin::Mesh { input, .. } if input.is_empty() => notes.push("meshes that nothing feeds".to_owned()),
+        Origin::Mesh { input, .. } => notes.push(format!("meshes of {input}")),
     }
     if plan.outputs.iter().any(|output| rows::id(plan, output.object) == id) {
         notes.push("output".to_owned());

@@ -1,0 +1,443 @@
+//! Bodies of a scene as one input of a graph: all their vertices one after the other, a list of
+//! calls that draw them, and where they are at a time.
+
+use std::collections::BTreeMap;
+use std::ops::Range;
+use std::sync::Arc;
+
+use glam::{DMat4, Mat4, Vec3};
+
+use crate::diagnostic::{Code, Diagnostic, Diagnostics};
+use crate::engine::packing;
+use crate::graph::value::Value;
+use crate::plan::meshes::{INSTANCE_BYTES, MaterialTexture, MeshDraw, MeshesInfo, VertexAttribute};
+use crate::scene::MeshEntry;
+use crate::scene::Playing;
+use crate::scene::image::Stored;
+use crate::scene::meshes::{AlphaMode, Material, Model, Primitive, TextureUse, UvTransform, is_mirrored};
+use crate::shader::reflect::Type;
+
+/// Bodies ready to be handed to a device.
+#[derive(Debug, Default)]
+pub struct Meshes {
+    pub info: MeshesInfo,
+    vertices: Vertices,
+    materials: Vec<Material>,
+    /// Which of the images each material's textures are, in the order of `MaterialTexture::ALL`.
+    pub(super) textures: Vec<[Option<usize>; 5]>,
+    pub(super) images: Vec<(Arc<Stored>, bool)>,
+    bodies: Vec<Mat4>,
+    /// An entry of the scene for each group of instances that moves together.
+    entries: Vec<Entry>,
+    instances: Vec<Instance>,
+}
+
+#[derive(Debug, Default)]
+struct Vertices {
+    positions: Vec<[f32; 3]>,
+    normals: Vec<[f32; 3]>,
+    tangents: Vec<[f32; 4]>,
+    uv0: Vec<[f32; 2]>,
+    uv1: Vec<[f32; 2]>,
+    color0: Vec<[f32; 4]>,
+    indices: Vec<u32>,
+}
+
+/// A mesh file of the scene, and what moves its nodes.
+#[derive(Debug)]
+struct Entry {
+    model: Arc<Model>,
+    animation: Option<usize>,
+    loops: bool,
+    start_s: f64,
+}
+
+/// A primitive placed in a body.
+#[derive(Clone, Copy, Debug)]
+struct Instance {
+    entry: usize,
+    node: usize,
+    body: u32,
+    first_triangle: u32,
+    triangles: u32,
+    material: u32,
+}
+
+/// Where a model's primitives and materials lie among all.
+struct Placed {
+    /// By mesh and primitive.
+    indices: Vec<Vec<Range<u32>>>,
+    first_material: u32,
+}
+
+impl Meshes {
+    /// Puts bodies together.
+    ///
+    /// # Errors
+    /// If an entry asks for an animation that its file does not have, or there is more than can be
+    /// counted.
+    pub fn new(parts: &[(&MeshEntry, Arc<Model>)]) -> Result<Self, Diagnostics> {
+        let mut meshes = Self::default();
+        let mut placed: Vec<(Arc<Model>, Placed)> = Vec::new();
+        let mut found = Diagnostics::new();
+        for (entry, model) in parts {
+            let known = placed.iter().position(|(other, _)| Arc::ptr_eq(other, model));
+            let at = match known {
+                Some(at) => at,
+                None => {
+                    placed.push((Arc::clone(model), meshes.place(model)));
+                    placed.len() - 1
+                }
+            };
+            match animation(entry, model) {
+                Ok((animation, loops, start_s)) => {
+                    meshes.entries.push(Entry { model: Arc::clone(model), animation, loops, start_s });
+                    meshes.add(entry, &placed[at].1);
+                }
+                Err(error) => found.push(error),
+            }
+        }
+        if u32::try_from(meshes.vertices.indices.len()).is_err() {
+            found.push(Diagnostic::error(Code::ASSET, "the scene's meshes have more than 4,294,967,295 indices"));
+        }
+        if !found.is_empty() {
+            return Err(found);
+        }
+        meshes.sort_draws();
+        meshes.fill_info(parts);
+        Ok(meshes)
+    }
+
+    /// Appends a model's vertices, triangles and materials.
+    fn place(&mut self, model: &Model) -> Placed {
+        let indices = model
+            .meshes
+            .iter()
+            .map(|mesh| mesh.primitives.iter().map(|primitive| self.vertices.append(primitive)).collect())
+            .collect();
+        let first_material = self.materials.len() as u32;
+        self.materials.extend(model.materials.iter().cloned());
+        for material in &model.materials {
+            let slots = slots(material).map(|(slot, used)| {
+                let image = model.images.get(used?.image)?;
+                Some(self.image(image, matches!(slot, MaterialTexture::BaseColor | MaterialTexture::Emissive)))
+            });
+            self.textures.push(slots);
+        }
+        Placed { indices, first_material }
+    }
+
+    /// An image among all, once for each way that its numbers are read.
+    fn image(&mut self, image: &Arc<Stored>, is_srgb: bool) -> usize {
+        let same = |(other, way): &(Arc<Stored>, bool)| Arc::ptr_eq(other, image) && *way == is_srgb;
+        self.images.iter().position(same).unwrap_or_else(|| {
+            self.images.push((Arc::clone(image), is_srgb));
+            self.images.len() - 1
+        })
+    }
+
+    /// Adds the bodies of the last entry, with a call for each primitive that they show.
+    fn add(&mut self, about: &MeshEntry, placed: &Placed) {
+        let entry = self.entries.len() - 1;
+        let model = Arc::clone(&self.entries[entry].model);
+        let first_body = self.bodies.len() as u32;
+        self.bodies.extend(about.world_from_body.iter().map(DMat4::as_mat4));
+        let pose = self.entries[entry].pose(0.0);
+        for (node, body_from_node) in pose.iter().enumerate() {
+            let Some((mesh, ranges)) =
+                model.nodes[node].mesh.and_then(|m| Some((model.meshes.get(m)?, placed.indices.get(m)?)))
+            else {
+                continue;
+            };
+            for (primitive, range) in mesh.primitives.iter().zip(ranges) {
+                let material = placed.first_material + primitive.material as u32;
+                let (first_index, indices) = (range.start, range.end - range.start);
+                // Mirrored and other bodies have calls of their own, since their fronts differ.
+                for mirrored in [false, true] {
+                    let first_instance = self.instances.len() as u32;
+                    for (i, world) in about.world_from_body.iter().enumerate() {
+                        if is_mirrored(world.as_mat4() * *body_from_node) == mirrored {
+                            let body = first_body + i as u32;
+                            let (first_triangle, triangles) = (first_index / 3, indices / 3);
+                            self.instances.push(Instance { entry, node, body, first_triangle, triangles, material });
+                        }
+                    }
+                    let instances = self.instances.len() as u32 - first_instance;
+                    if instances > 0 && indices > 0 {
+                        let of = &self.materials[material as usize];
+                        self.info.draws.push(MeshDraw {
+                            first_index,
+                            indices,
+                            first_instance,
+                            instances,
+                            material,
+                            faces: crate::plan::meshes::Faces { double_sided: of.double_sided, mirrored },
+                            blended: of.alpha_mode == AlphaMode::Blend,
+                            tags: about.tags.clone(),
+                        });
+                    }
+                }
+            }
+        }
+    }
+
+    /// What is opaque first; then few changes of pipelines and materials.
+    fn sort_draws(&mut self) {
+        self.info.draws.sort_by_key(|draw| (draw.blended, draw.faces, draw.material));
+    }
+
+    fn fill_info(&mut self, parts: &[(&MeshEntry, Arc<Model>)]) {
+        let (min, max) = self.bounds();
+        self.info = MeshesInfo {
+            bodies: self.bodies.len() as u64,
+            instances: self.instances.len() as u64,
+            vertices: self.vertices.positions.len() as u64,
+            triangles: self.vertices.indices.len() as u64 / 3,
+            materials: self.materials.len() as u32,
+            draws: std::mem::take(&mut self.info.draws),
+            min: min.as_dvec3().to_array(),
+            max: max.as_dvec3().to_array(),
+            animated: self.entries.iter().any(|entry| entry.animation.is_some()),
+            values: values(parts),
+        };
+    }
+
+    /// The box around all bodies at time 0.
+    fn bounds(&self) -> (Vec3, Vec3) {
+        let poses: Vec<Vec<Mat4>> = self.entries.iter().map(|entry| entry.pose(0.0)).collect();
+        let mut boxes: BTreeMap<u32, (Vec3, Vec3)> = BTreeMap::new();
+        let (mut min, mut max) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
+        for instance in &self.instances {
+            let (low, high) = *boxes.entry(instance.first_triangle).or_insert_with(|| self.vertices.bounds(instance));
+            let world = self.bodies[instance.body as usize] * poses[instance.entry][instance.node];
+            for corner in 0..8 {
+                let part =
+                    Vec3::from_array([0, 1, 2].map(|axis| if corner >> axis & 1 == 0 { low } else { high }[axis]));
+                let at = world.transform_point3(part);
+                (min, max) = (min.min(at), max.max(at));
+            }
+        }
+        if min.x <= max.x { (min, max) } else { (Vec3::ZERO, Vec3::ZERO) }
+    }
+
+    pub(super) fn vertices(&self, attribute: VertexAttribute) -> &[u8] {
+        match attribute {
+            VertexAttribute::Position => bytemuck::cast_slice(&self.vertices.positions),
+            VertexAttribute::Normal => bytemuck::cast_slice(&self.vertices.normals),
+            VertexAttribute::Tangent => bytemuck::cast_slice(&self.vertices.tangents),
+            VertexAttribute::Uv0 => bytemuck::cast_slice(&self.vertices.uv0),
+            VertexAttribute::Uv1 => bytemuck::cast_slice(&self.vertices.uv1),
+            VertexAttribute::Color0 => bytemuck::cast_slice(&self.vertices.color0),
+            VertexAttribute::Instance => &[],
+        }
+    }
+
+    pub(super) fn triangles(&self) -> &[u8] {
+        bytemuck::cast_slice(&self.vertices.indices)
+    }
+
+    pub(super) fn bodies(&self) -> Vec<u8> {
+        self.bodies.iter().flat_map(|m| bytemuck::bytes_of(&m.to_cols_array()).to_vec()).collect()
+    }
+
+    /// Items of `x.instances` at a time in seconds.
+    pub(super) fn instances(&self, time_s: f64) -> Vec<u8> {
+        let poses: Vec<Vec<Mat4>> = self.entries.iter().map(|entry| entry.pose(time_s)).collect();
+        let mut bytes = Vec::with_capacity(self.instances.len() * INSTANCE_BYTES as usize);
+        for instance in &self.instances {
+            let matrix = poses[instance.entry][instance.node].to_cols_array();
+            bytes.extend_from_slice(bytemuck::bytes_of(&matrix));
+            let words = [instance.body, instance.first_triangle, instance.triangles, instance.material];
+            bytes.extend_from_slice(bytemuck::bytes_of(&words));
+        }
+        bytes
+    }
+
+    /// A value of each body, as a shader's type wants it.
+    pub(super) fn value(
+        &self,
+        name: &str,
+        default: Option<&Value>,
+        item: Option<&Type>,
+        stride: u32,
+    ) -> Result<Vec<u8>, String> {
+        let ty = item.ok_or("no shader says what a value is")?;
+        let given = self.info.values.get(name);
+        let mut bytes = vec![0; self.bodies.len() * stride as usize];
+        for (body, out) in bytes.chunks_exact_mut(stride.max(1) as usize).enumerate() {
+            let value = given.and_then(|all| all.get(body)?.as_ref()).or(default);
+            let value = value.ok_or_else(|| format!("body {body} has no value `{name}`"))?;
+            packing::encode(value, ty, out).map_err(|why| format!("`{name}` of body {body}: {why}"))?;
+        }
+        Ok(bytes)
+    }
+
+    /// The factors of all materials, as a shader's struct wants them.
+    pub(super) fn materials(&self, item: Option<&Type>, stride: u32) -> Result<Vec<u8>, String> {
+        let Some(Type::Struct { members, .. }) = item else { return Err("a material is a struct".into()) };
+        let mut bytes = vec![0; self.materials.len() * stride as usize];
+        for (material, out) in self.materials.iter().zip(bytes.chunks_exact_mut(stride.max(1) as usize)) {
+            for member in members {
+                let value = factor(material, &member.name).ok_or_else(|| format!("there is no `{}`", member.name))?;
+                let place = out.get_mut(member.offset as usize..).unwrap_or_default();
+                packing::encode(&value, &member.ty, place).map_err(|why| format!("`{}`: {why}", member.name))?;
+            }
+        }
+        Ok(bytes)
+    }
+
+    /// How each texture of each material is looked up.
+    pub(super) fn uses(&self) -> impl Iterator<Item = [Option<TextureUse>; 5]> {
+        self.materials.iter().map(|material| slots(material).map(|(_, used)| used))
+    }
+}
+
+impl Vertices {
+    /// Appends a primitive; gives the range of its indices.
+    fn append(&mut self, primitive: &Primitive) -> Range<u32> {
+        let first = self.positions.len() as u32;
+        let start = self.indices.len() as u32;
+        self.positions.extend_from_slice(&primitive.positions);
+        self.normals.extend_from_slice(&primitive.normals);
+        self.tangents.extend_from_slice(&primitive.tangents);
+        self.uv0.extend_from_slice(&primitive.uv0);
+        self.uv1.extend_from_slice(&primitive.uv1);
+        self.color0.extend_from_slice(&primitive.color0);
+        self.indices.extend(primitive.indices.iter().map(|index| first + index));
+        start..self.indices.len() as u32
+    }
+
+    /// The box around a primitive in the space of its node.
+    fn bounds(&self, instance: &Instance) -> (Vec3, Vec3) {
+        let first = instance.first_triangle as usize * 3;
+        let indices = self.indices.get(first..first + instance.triangles as usize * 3).unwrap_or_default();
+        let points = indices.iter().filter_map(|i| self.positions.get(*i as usize)).map(|p| Vec3::from_array(*p));
+        points.fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)))
+    }
+}
+
+impl Entry {
+    /// Body from node, for each node, at a time of the scene.
+    fn pose(&self, time_s: f64) -> Vec<Mat4> {
+        let duration_s = self.animation.and_then(|a| self.model.animations.get(a)).map_or(0.0, |a| a.duration_s);
+        let mut at_s = time_s + self.start_s;
+        if self.loops && duration_s > 0.0 {
+            at_s = at_s.rem_euclid(f64::from(duration_s));
+        }
+        self.model.pose(self.animation, at_s)
+    }
+}
+
+/// Which animation an entry plays, whether over and over, and from where.
+fn animation(entry: &MeshEntry, model: &Model) -> Result<(Option<usize>, bool, f64), Diagnostic> {
+    let Playing::Plays { animation, loops, start_s } = &entry.playing else { return Ok((None, false, 0.0)) };
+    let Some(name) = animation else {
+        return Ok(((!model.animations.is_empty()).then_some(0), *loops, *start_s));
+    };
+    if let Some(found) = model.animation(&name.value) {
+        return Ok((Some(found), *loops, *start_s));
+    }
+    let names: Vec<&str> = model.animations.iter().map(|a| a.name.as_str()).collect();
+    let message = format!("`{}` has no animation `{}`", entry.file.value, name.value);
+    let error = Diagnostic::error(Code::UNKNOWN_NAME, message).at(name.span, "asked for here");
+    Err(match names.as_slice() {
+        [] => error.hint("the file has no animations"),
+        names => error.nearest(&name.value, names.iter().copied()).hint(format!("it has {}", names.join(", "))),
+    })
+}
+
+/// Values by name: for each body what the scene gives.
+fn values(parts: &[(&MeshEntry, Arc<Model>)]) -> BTreeMap<String, Vec<Option<Value>>> {
+    let names = parts.iter().flat_map(|(entry, _)| &entry.values).map(|item| item.name.value.clone());
+    let mut all: BTreeMap<String, Vec<Option<Value>>> = names.map(|name| (name, Vec::new())).collect();
+    for (name, values) in &mut all {
+        for (entry, _) in parts {
+            let given = crate::scene::find(&entry.values, name).map(|item| item.value.clone());
+            values.extend(std::iter::repeat_n(given, entry.world_from_body.len()));
+        }
+    }
+    all
+}
+
+fn slots(material: &Material) -> [(MaterialTexture, Option<TextureUse>); 5] {
+    MaterialTexture::ALL.map(|slot| {
+        let used = match slot {
+            MaterialTexture::BaseColor => material.base_color_texture,
+            MaterialTexture::MetallicRoughness => material.metallic_roughness_texture,
+            MaterialTexture::Normal => material.normal_texture,
+            MaterialTexture::Occlusion => material.occlusion_texture,
+            MaterialTexture::Emissive => material.emissive_texture,
+        };
+        (slot, used)
+    })
+}
+
+/// A factor of a material by the name that shaders know it by.
+fn factor(material: &Material, name: &str) -> Option<Value> {
+    let vector = |v: &[f32]| Value::vec(v.iter().map(|x| f64::from(*x)));
+    let float = |x: f32| Value::Float(f64::from(x));
+    let whole = |n: u32| Value::Int(i64::from(n));
+    let slot = |ending: &str| {
+        let texture = MaterialTexture::named(name, ending)?;
+        Some(slots(material)[texture as usize].1)
+    };
+    if let Some(used) = slot("_texcoord") {
+        return Some(whole(used.map_or(0, |used| used.uv_set)));
+    }
+    if let Some(used) = slot("_transform") {
+        return Some(transform(&used.map(|used| used.transform).unwrap_or_default()));
+    }
+    Some(match name {
+        "base_color_factor" => vector(&material.base_color_factor),
+        "metallic_factor" => float(material.metallic_factor),
+        "roughness_factor" => float(material.roughness_factor),
+        "emissive_factor" => vector(&material.emissive_factor),
+        "emissive_strength" => float(material.emissive_strength),
+        "normal_scale" => float(material.normal_scale),
+        "occlusion_strength" => float(material.occlusion_strength),
+        "alpha_mode" => whole(match material.alpha_mode {
+            AlphaMode::Opaque => 0,
+            AlphaMode::Mask => 1,
+            AlphaMode::Blend => 2,
+        }),
+        "alpha_cutoff" => float(material.alpha_cutoff),
+        "double_sided" => whole(u32::from(material.double_sided)),
+        "unlit" => whole(u32::from(material.unlit)),
+        "ior" => float(material.ior),
+        "transmission_factor" => float(material.transmission_factor),
+        _ => return None,
+    })
+}
+
+/// Columns of the matrix that takes (u, v, 1) to where a texture is looked up.
+fn transform(about: &UvTransform) -> Value {
+    let (sin, cos) = about.rotation.sin_cos();
+    let [x, y] = about.scale;
+    let [u, v] = about.offset;
+    Value::vec([cos * x, -sin * x, 0.0, sin * y, cos * y, 0.0, u, v, 1.0].map(f64::from))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::plan::meshes::MATERIAL;
+
+    #[test]
+    fn every_factor_that_planning_knows_has_a_value_that_fits() {
+        for (name, ty) in MATERIAL {
+            let value = factor(&Material::default(), name).unwrap_or_else(|| panic!("no `{name}`"));
+            let mut out = vec![0; ty.size() as usize];
+            packing::encode(&value, ty, &mut out).unwrap_or_else(|why| panic!("`{name}`: {why}"));
+        }
+        assert_eq!(factor(&Material::default(), "base_colour_factor"), None);
+    }
+
+    #[test]
+    fn textures_turn_counter_clockwise_as_they_are_seen() {
+        let quarter = UvTransform { rotation: std::f32::consts::FRAC_PI_2, ..UvTransform::default() };
+        let Value::Vector(m) = transform(&quarter) else { panic!("no matrix") };
+        // v grows downwards: u = (1, 0) turned by a quarter points up, to (0, -1).
+        let up: Vec<f64> = m[..2].iter().filter_map(Value::as_f64).collect();
+        assert!(up[0].abs() < 1e-6 && (up[1] + 1.0).abs() < 1e-6, "{up:?}");
+    }
+}

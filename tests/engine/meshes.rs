@@ -1,0 +1,269 @@
+//! Meshes from a scene to pixels: where bodies stand, which sides show, what materials are, what moves.
+
+use std::path::PathBuf;
+
+use base64::Engine as _;
+use meniscus::diagnostic::{Sources, Style, render_all};
+use meniscus::engine::{Engine, Gpu, GpuOptions};
+use meniscus::files::MemoryFiles;
+use meniscus::host::{Cache, Job, Moment, Session, load};
+
+/// A square from -0.5 to 0.5 that faces +z, as a glTF file; `more` goes into its material, `node`
+/// into its node, `rest` beside them.
+fn square(more: &str, node: &str, rest: &str) -> String {
+    let corners: [[f32; 3]; 4] = [[-0.5, -0.5, 0.0], [0.5, -0.5, 0.0], [0.5, 0.5, 0.0], [-0.5, 0.5, 0.0]];
+    let uvs: [[f32; 2]; 4] = [[0.0, 1.0], [1.0, 1.0], [1.0, 0.0], [0.0, 0.0]];
+    let indices: [u16; 6] = [0, 1, 2, 0, 2, 3];
+    let times: [f32; 2] = [0.0, 1.0];
+    let moves: [[f32; 3]; 2] = [[0.0; 3], [2.0, 0.0, 0.0]];
+    let mut bytes: Vec<u8> = Vec::new();
+    bytes.extend(corners.as_flattened().iter().flat_map(|x| x.to_le_bytes()));
+    bytes.extend(uvs.as_flattened().iter().flat_map(|x| x.to_le_bytes()));
+    bytes.extend(indices.iter().flat_map(|x| x.to_le_bytes()));
+    bytes.extend(times.iter().flat_map(|x| x.to_le_bytes()));
+    bytes.extend(moves.as_flattened().iter().flat_map(|x| x.to_le_bytes()));
+    let data = base64::prelude::BASE64_STANDARD.encode(&bytes);
+    format!(
+        r#"{{ "asset": {{ "version": "2.0" }}, "scene": 0, "scenes": [{{ "nodes": [0] }}],
+        "nodes": [{{ "mesh": 0 {node} }}],
+        "meshes": [{{ "primitives": [{{ "attributes": {{ "POSITION": 0, "TEXCOORD_0": 1 }}, "indices": 2, "material": 0 }}] }}],
+        "materials": [{{ {more} }}],
+        "buffers": [{{ "byteLength": {}, "uri": "data:application/octet-stream;base64,{data}" }}],
+        "bufferViews": [
+            {{ "buffer": 0, "byteOffset": 0, "byteLength": 48 }}, {{ "buffer": 0, "byteOffset": 48, "byteLength": 32 }},
+            {{ "buffer": 0, "byteOffset": 80, "byteLength": 12 }}, {{ "buffer": 0, "byteOffset": 92, "byteLength": 8 }},
+            {{ "buffer": 0, "byteOffset": 100, "byteLength": 24 }}],
+        "accessors": [
+            {{ "bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3", "min": [-0.5, -0.5, 0], "max": [0.5, 0.5, 0] }},
+            {{ "bufferView": 1, "componentType": 5126, "count": 4, "type": "VEC2" }},
+            {{ "bufferView": 2, "componentType": 5123, "count": 6, "type": "SCALAR" }},
+            {{ "bufferView": 3, "componentType": 5126, "count": 2, "type": "SCALAR", "min": [0], "max": [1] }},
+            {{ "bufferView": 4, "componentType": 5126, "count": 2, "type": "VEC3" }}]
+        {rest} }}"#,
+        bytes.len()
+    )
+}
+
+fn colored(color: &str, more: &str) -> String {
+    square(&format!(r#""pbrMetallicRoughness": {{ "baseColorFactor": {color} }} {more}"#), "", "")
+}
+
+const WGSL: &str = r#"
+#import "lib/meshes.wgsl"
+
+struct Material {
+    base_color_factor: vec4f,
+    roughness_factor: f32,
+}
+
+var<uniform> material: Material;
+var base_color_texture: texture_2d<f32>;
+var base_color_sampler: sampler;
+var<storage> meshes_bodies: array<mat4x4f>;
+var<storage> meshes_instances: array<Instance>;
+
+struct Vertex {
+    @builtin(position) clip: vec4f,
+    @location(0) uv: vec2f,
+}
+
+/// The picture shows x and y from -2 to 2.
+@vertex
+fn place(@location(0) position: vec3f, @location(3) uv0: vec2f, @location(1) instance: u32) -> Vertex {
+    let i = meshes_instances[instance];
+    let at = meshes_bodies[i.body] * i.body_from_mesh * vec4f(position, 1.0);
+    return Vertex(vec4f(at.xy * 0.5, 0.5 + 0.1 * at.z, 1.0), uv0);
+}
+
+@fragment
+fn paint(in: Vertex) -> @location(0) vec4f {
+    let color = material.base_color_factor * textureSample(base_color_texture, base_color_sampler, in.uv);
+    return vec4f(color.rgb, material.roughness_factor);
+}
+"#;
+
+const RAISE: &str = r#"
+var<storage> meshes_bodies: array<mat4x4f>;
+var<storage> meshes_lift: array<f32>;
+var<storage, read_write> raised: array<mat4x4f>;
+
+@compute @workgroup_size(64)
+fn raise(@builtin(global_invocation_id) id: vec3u) {
+    if id.x < arrayLength(&raised) {
+        var body = meshes_bodies[id.x];
+        body[3].y += meshes_lift[id.x];
+        raised[id.x] = body;
+    }
+}
+"#;
+
+fn graph(values: &str, draws: &str) -> String {
+    format!(
+        r#"Graph(
+    inputs: {{ "meshes": Meshes(optional: true, values: {{ {values} }}) }},
+    resources: {{
+        "color": Texture(format: Rgba16Float, size: "viewport"),
+        "depth": Texture(format: Depth32Float, size: "viewport"),
+        "raised": Buffer(items: "count(meshes.bodies)"),
+    }},
+    passes: [{draws}],
+    outputs: ["color"],
+)"#
+    )
+}
+
+const DRAW: &str = r#"Draw(shader: "mesh.wgsl", meshes: "meshes", cull: Back, depth: Nearest("depth"),
+    color: [(to: "color", clear: (0.0, 0.0, 0.0, 0.0))])"#;
+
+fn scene(bodies: &str) -> String {
+    format!(
+        r#"Scene(graph: "graph.ron", camera: Camera(eye: (0, 0, 3), target: (0, 0, 0)), size: (64, 64),
+    meshes: {{"meshes": [{bodies}]}})"#
+    )
+}
+
+/// The files of a test: red and blue squares, the shader, a graph and a scene.
+fn files(graph: String, scene: String) -> MemoryFiles {
+    MemoryFiles::default()
+        .with("red.gltf", colored("[1, 0, 0, 1]", ""))
+        .with("blue.gltf", colored("[0, 0, 1, 1]", ""))
+        .with("both_sides.gltf", colored("[0, 1, 0, 1]", r#", "doubleSided": true"#))
+        .with("mesh.wgsl", WGSL)
+        .with("raise.wgsl", RAISE)
+        .with("graph.ron", graph)
+        .with("scene.ron", scene)
+}
+
+/// The picture at points whose x and y go from -2 to 2.
+fn seen(files: &MemoryFiles, moment: Moment, points: &[[f32; 2]]) -> Vec<[f32; 4]> {
+    let (mut sources, mut cache) = (Sources::new(), Cache::default());
+    let job = Job { source: PathBuf::from("scene.ron"), ..Job::default() };
+    let loaded = load(files, &mut sources, &job, &mut cache);
+    let said = render_all(&loaded.diagnostics, &sources, Style::Plain);
+    let mut session = Session::new(Gpu::open(&GpuOptions::default()).unwrap());
+    session.build(loaded.content.unwrap_or_else(|| panic!("{said}"))).unwrap();
+    session.draw(moment, false).unwrap();
+    let light = session.light().unwrap();
+    let at = |[x, y]: &[f32; 2]| {
+        let (column, row) = (((x + 2.0) * 16.0) as usize, ((2.0 - y) * 16.0) as usize);
+        light.rgba[row * light.width as usize + column]
+    };
+    points.iter().map(at).collect()
+}
+
+const NOTHING: [f32; 4] = [0.0; 4];
+const RED: [f32; 4] = [1.0, 0.0, 0.0, 1.0];
+const BLUE: [f32; 4] = [0.0, 0.0, 1.0, 1.0];
+const GREEN: [f32; 4] = [0.0, 1.0, 0.0, 1.0];
+
+pub fn bodies_stand_where_the_scene_says(_: &mut Engine) {
+    let bodies = r#"(file: "red.gltf", position: (-1, 1, 0), scale: (1.5, 0.5, 1)), (file: "blue.gltf", position: (0, -1, 0),
+        instances: [(), (position: (1, 0, 0), rotation: (0, 0, 45))])"#;
+    let points = [[-1.6, 1.0], [-1.0, 1.4], [0.0, -1.0], [1.0, -1.0], [1.6, -1.0], [1.4, -1.4], [-1.0, -1.0]];
+    let found = seen(&files(graph("", DRAW), scene(bodies)), Moment::default(), &points);
+    assert_eq!(found, [RED, NOTHING, BLUE, BLUE, BLUE, NOTHING, NOTHING]);
+}
+
+pub fn fronts_stay_fronts(_: &mut Engine) {
+    let bodies = r#"(file: "red.gltf", position: (-1, 1, 0)), (file: "red.gltf", position: (1, 1, 0), rotation: (0, 180, 0)),
+        (file: "blue.gltf", position: (-1, -1, 0), scale: (-1, 1, 1)),
+        (file: "blue.gltf", position: (0, -1, 0), scale: (-1, 1, 1), rotation: (0, 180, 0)),
+        (file: "both_sides.gltf", position: (1, -1, 0), rotation: (0, 180, 0))"#;
+    let points = [[-1.0, 1.0], [1.0, 1.0], [-1.0, -1.0], [0.0, -1.0], [1.0, -1.0]];
+    let found = seen(&files(graph("", DRAW), scene(bodies)), Moment::default(), &points);
+    assert_eq!(found, [RED, NOTHING, BLUE, NOTHING, GREEN]);
+}
+
+/// A shader raises each body by its value; one draw shows only what bears a tag.
+pub fn tags_and_values_and_computed_bodies(_: &mut Engine) {
+    let draws = r#"Compute(shader: "raise.wgsl", each: Item("meshes")),
+        Draw(shader: "mesh.wgsl", meshes: "meshes", tags: ["floats", "flies"], bind: {"meshes_bodies": "raised"},
+             depth: Nearest("depth"), color: [(to: "color", clear: (0.0, 0.0, 0.0, 0.0))])"#;
+    let bodies = r#"(file: "red.gltf", position: (-1, 0, 0), tags: ["floats"], values: {"lift": 1}),
+        (file: "red.gltf", position: (0, 0, 0), tags: ["sinks"]), (file: "blue.gltf", position: (1, 0, 0), tags: ["x", "flies"])"#;
+    let files = files(graph(r#""lift": Float(default: -1.0)"#, draws), scene(bodies));
+    let points = [[-1.0, 1.0], [-1.0, 0.0], [0.0, 0.0], [0.0, -1.0], [1.0, -1.0], [1.0, 0.0]];
+    assert_eq!(seen(&files, Moment::default(), &points), [RED, NOTHING, NOTHING, NOTHING, BLUE, NOTHING]);
+}
+
+pub fn absent_meshes_are_no_bodies(_: &mut Engine) {
+    let draw = DRAW.replace("(0.0, 0.0, 0.0, 0.0)", "(0.25, 0.5, 0.75, 1.0)");
+    let scene = scene("").replace(r#"meshes: {"meshes": []}"#, "");
+    let found = seen(&files(graph("", &draw), scene), Moment::default(), &[[0.0, 0.0]]);
+    assert_eq!(found, [[0.25, 0.5, 0.75, 1.0]], "the target is cleared, and nothing drawn");
+}
+
+/// Two materials in one draw: a texture of two texels, looked up without a filter, and a factor.
+pub fn materials_are_bound_by_name(_: &mut Engine) {
+    let mut png = std::io::Cursor::new(Vec::new());
+    // Left half of the light in numbers that eyes see as even; right blue.
+    let picture =
+        image::RgbaImage::from_fn(2, 1, |x, _| image::Rgba(if x == 0 { [188, 0, 0, 255] } else { [0, 0, 255, 255] }));
+    picture.write_to(&mut png, image::ImageFormat::Png).unwrap();
+    let uri = base64::prelude::BASE64_STANDARD.encode(png.into_inner());
+    let textured = square(
+        r#""pbrMetallicRoughness": { "baseColorTexture": { "index": 0 }, "baseColorFactor": [0.5, 1, 1, 1], "roughnessFactor": 0.25 }"#,
+        "",
+        &format!(
+            r#", "textures": [{{ "source": 0, "sampler": 0 }}], "samplers": [{{ "magFilter": 9728, "minFilter": 9728 }}],
+            "images": [{{ "uri": "data:image/png;base64,{uri}" }}]"#
+        ),
+    );
+    let bodies = r#"(file: "red.gltf", position: (-1, 0, 0)), (file: "textured.gltf", position: (1, 0, 0))"#;
+    let files = files(graph("", DRAW), scene(bodies)).with("textured.gltf", textured);
+    let found = seen(&files, Moment::default(), &[[-1.0, 0.0], [0.75, 0.0], [1.25, 0.0]]);
+    assert_eq!(found[0], RED);
+    // 188 of 255 in sRGB is half of the light, times the factor's half.
+    assert!((found[1][0] - 0.25).abs() < 0.005 && found[1][1..] == [0.0, 0.0, 0.25], "{:?}", found[1]);
+    assert_eq!(found[2], [0.0, 0.0, 1.0, 0.25]);
+}
+
+/// A node that moves by 2 along x in a second; over and over, or once; or not at all.
+pub fn animations_move_nodes(_: &mut Engine) {
+    let rest = r#", "animations": [{ "name": "go", "samplers": [{ "input": 3, "output": 4, "interpolation": "LINEAR" }],
+        "channels": [{ "sampler": 0, "target": { "node": 0, "path": "translation" } }] }]"#;
+    let moving =
+        square(r#""pbrMetallicRoughness": { "baseColorFactor": [1, 0, 0, 1] }"#, r#", "translation": [0, 0, 0]"#, rest);
+    let points = [[-1.0, 0.0], [0.0, 0.0], [1.0, 0.0]];
+    let at = |how: &str, time_s: f64| {
+        let body = format!(r#"(file: "moving.gltf", position: (-1, 0, 0), {how})"#);
+        let files = files(graph("", DRAW), scene(&body)).with("moving.gltf", moving.clone());
+        seen(&files, Moment::at_time(time_s), &points).iter().map(|c| *c == RED).collect::<Vec<_>>()
+    };
+    assert_eq!(at("", 0.0), [true, false, false]);
+    assert_eq!(at(r#"animation: "go""#, 0.5), [false, true, false]);
+    assert_eq!(at("", 1.5), [false, true, false], "it plays over and over");
+    assert_eq!(at("loop: false", 1.5), [false, false, true], "it stays where it ended");
+    assert_eq!(at("start: 0.5", 0.0), [false, true, false]);
+    assert_eq!(at("animation: None", 0.5), [true, false, false]);
+}
+
+pub fn what_does_not_fit_is_told(_: &mut Engine) {
+    let said = |graph: String, bodies: &str| {
+        let (mut sources, mut cache) = (Sources::new(), Cache::default());
+        let job = Job { source: PathBuf::from("scene.ron"), ..Job::default() };
+        let loaded = load(&files(graph, scene(bodies)), &mut sources, &job, &mut cache);
+        let mut all = loaded.diagnostics;
+        if let Some(content) = loaded.content {
+            let mut session = Session::new(Gpu::open(&GpuOptions::default()).unwrap());
+            all.extend(session.build(content).map(|b| b.diagnostics).unwrap_or_else(|d| d));
+        }
+        render_all(&all, &sources, Style::Plain)
+    };
+    let plain = || graph("", DRAW);
+    let lifting =
+        graph(r#""lift": Float(max: 2.0)"#, &format!(r#"Compute(shader: "raise.wgsl", each: Item("meshes")), {DRAW}"#));
+    for (graph, bodies, words) in [
+        (plain(), r#"(file: "red.gltf", animation: "go")"#, "`red.gltf` has no animation `go`"),
+        (plain(), r#"(file: "gone.gltf")"#, "there is no file `gone.gltf`"),
+        (plain(), r#"(file: "mesh.wgsl")"#, "its extension is not that of a mesh file"),
+        (plain(), r#"(file: "red.gltf", scale: (1, 0, 1))"#, "a scale of 0 leaves nothing of a body"),
+        (plain(), r#"(file: "red.gltf", colour: 3)"#, "a body has no field `colour`"),
+        (lifting.clone(), r#"(file: "red.gltf")"#, "body 0 of `meshes` has no value `lift`"),
+        (lifting.clone(), r#"(file: "red.gltf", values: {"lift": 3})"#, "`lift` must be at most 2, and is 3"),
+        (lifting, r#"(file: "red.gltf", values: {"lift": "high"})"#, "`lift` is a Float and cannot be high"),
+    ] {
+        let text = said(graph, bodies);
+        assert!(text.contains(words), "no {words:?} in:\n{text}");
+    }
+}
