@@ -335,7 +335,9 @@ fn node(plan: &Plan, u: usize, unit: &Unit, writer: &[Option<usize>], shares: &d
             for id in objects(plan, &access.object) {
                 match plan.objects[id].origin {
                     Origin::State(_) => node.touches_state = true,
-                    Origin::Input(_) | Origin::Attribute { .. } | Origin::Mesh { .. } => node.writes_input |= access.write && !repeats,
+                    Origin::Input(_) | Origin::Attribute { .. } | Origin::Mesh { .. } => {
+                        node.writes_input |= access.write && !repeats
+                    }
                     Origin::Frame => {}
                 }
                 if access.read && shares(id) {
