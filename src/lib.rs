@@ -13,9 +13,12 @@ pub mod files;
 pub mod format;
 pub mod graph;
 pub mod host;
+mod output;
 pub mod plan;
 pub mod program;
 pub mod reload;
 pub mod scene;
 pub mod shader;
 pub mod syntax;
+#[cfg(feature = "viewer")]
+pub mod viewer;

@@ -15,6 +15,8 @@ pub struct Cli {
 
 #[derive(Debug, Subcommand)]
 pub enum Command {
+    /// Open a window: camera, parameters, passes with their times, errors, reload at each save
+    View(ViewArgs),
     /// Render one picture, or with --frames a numbered sequence
     Render(RenderArgs),
     /// Render again at each change of what was read, and print each reload's time
@@ -114,6 +116,13 @@ pub struct WatchArgs {
     /// Keep the graph's coverage as alpha in place of a backdrop
     #[arg(long)]
     pub transparent: bool,
+}
+
+#[derive(Args, Clone, Debug)]
+#[command(mut_arg("scene", |scene| scene.required(false).default_value(super::view::HERE).hide_default_value(true)))]
+pub struct ViewArgs {
+    #[command(flatten)]
+    pub scene: SceneArgs,
 }
 
 #[derive(Args, Clone, Debug)]

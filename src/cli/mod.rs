@@ -8,12 +8,12 @@ mod dump;
 mod explain;
 mod info;
 mod new;
-mod output;
 mod plan;
 mod render;
 mod report;
 mod session;
 mod table;
+mod view;
 mod watch;
 
 use std::ffi::OsString;
@@ -21,6 +21,7 @@ use std::process::ExitCode;
 
 use clap::Parser as _;
 
+use crate::output;
 pub use args::Cli;
 pub use report::Exit;
 
@@ -36,6 +37,7 @@ pub fn run(args: impl IntoIterator<Item = OsString>) -> ExitCode {
         }
     };
     match &cli.command {
+        args::Command::View(args) => view::run(args),
         args::Command::Render(args) => render::run(args),
         args::Command::Watch(args) => watch::run(args),
         args::Command::Check(args) => check::run(args),

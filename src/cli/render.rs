@@ -14,7 +14,7 @@ use super::session::{Opening, job, moment, numbered};
 use super::table;
 use crate::diagnostic::{Code, Diagnostic, Diagnostics, Sources};
 use crate::files::DiskFiles;
-use crate::host::picture::{self, PictureKind};
+use crate::host::picture::PictureKind;
 use crate::host::{Cache, Moment, Session, load};
 
 pub fn run(args: &RenderArgs) -> Exit {
@@ -132,7 +132,7 @@ fn draw(
         let drawn = session.draw(*at, kind == PictureKind::Png)?;
         notes.extend(drawn.diagnostics);
         clock.lap("drawing");
-        output.write(&encode(session, kind, args.transparent)?)?;
+        output.write(&session.encoded(kind, args.transparent)?)?;
         clock.lap("writing");
         if args.timings {
             say(&table::passes(&drawn.reports));
@@ -142,22 +142,6 @@ fn draw(
         }
     }
     Ok(notes)
-}
-
-/// The picture that was drawn last, as a file's bytes.
-pub fn encode(session: &mut Session, kind: PictureKind, transparent: bool) -> Result<Vec<u8>, Diagnostic> {
-    let encoded = match kind {
-        PictureKind::Png => {
-            let data = session.presented()?;
-            if data.format != crate::format::TextureFormat::Rgba16Float {
-                let message = "the presenting graph's output is not `Rgba16Float`";
-                return Err(Diagnostic::error(Code::FORMAT, message));
-            }
-            picture::presented_png([data.width, data.height], &data.bytes, transparent)
-        }
-        PictureKind::Exr => picture::exr(&session.light()?),
-    };
-    encoded.map_err(|why| Diagnostic::error(Code::OUTPUT, format!("the picture cannot be encoded: {why}")))
 }
 
 /// For long work on a terminal.

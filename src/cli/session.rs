@@ -1,11 +1,11 @@
 //! What `render`, `watch` and `bench` share: from arguments to a job and a device.
 
-use std::path::PathBuf;
 use std::thread::{self, JoinHandle};
 
 use super::args::{SceneArgs, WhenArgs};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::engine::{Gpu, GpuOptions};
+pub use crate::host::picture::numbered;
 use crate::host::{Job, Moment};
 
 /// What the arguments ask to see.
@@ -60,31 +60,5 @@ impl Drop for Opening {
             // Whether it opened does not matter any more.
             _ = thread.join();
         }
-    }
-}
-
-/// The name of the picture of a frame: `{}` in the name, or before its extension, the number.
-pub fn numbered(path: &std::path::Path, frame: u64) -> PathBuf {
-    let name = path.file_name().unwrap_or_default().to_string_lossy();
-    let number = format!("{frame:04}");
-    let numbered = match name.split_once("{}") {
-        Some((before, after)) => format!("{before}{number}{after}"),
-        None => match name.rsplit_once('.') {
-            Some((stem, end)) => format!("{stem}_{number}.{end}"),
-            None => format!("{name}_{number}"),
-        },
-    };
-    path.with_file_name(numbered)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use std::path::Path;
-
-    #[test]
-    fn frames_are_numbered() {
-        assert_eq!(numbered(Path::new("out/a.png"), 7), Path::new("out/a_0007.png"));
-        assert_eq!(numbered(Path::new("out/{}-a.png"), 12345), Path::new("out/12345-a.png"));
     }
 }

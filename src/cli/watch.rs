@@ -5,7 +5,6 @@ use std::time::{Duration, Instant, SystemTime};
 
 use super::args::WatchArgs;
 use super::output::Output;
-use super::render::encode;
 use super::report::{Exit, report, say};
 use super::session::{Opening, job, moment};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics, Sources};
@@ -120,7 +119,7 @@ impl Follower<'_> {
         let began = Instant::now();
         let drawn = self.session.draw(self.at, self.kind == PictureKind::Png)?;
         found.extend(drawn.diagnostics);
-        let bytes = encode(&mut self.session, self.kind, self.args.transparent)?;
+        let bytes = self.session.encoded(self.kind, self.args.transparent)?;
         Output::reserve(&self.args.output)?.write(&bytes)?;
         Ok(Times {
             checking: ms(checking),

@@ -206,6 +206,11 @@ impl Gpu {
         waited.map(|_| ()).map_err(|e| errors::wait_failed(&e, LONGEST_WAIT))
     }
 
+    /// Calls back once all that was submitted so far is done, from within [`Gpu::poll`] or a wait.
+    pub fn when_done(&self, call: impl FnOnce() + Send + 'static) {
+        self.queue.on_submitted_work_done(call);
+    }
+
     /// Lets callbacks of finished work run, without waiting.
     pub fn poll(&self) {
         // Only waiting can fail.

@@ -3,6 +3,8 @@
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 
+use wgpu_types::TextureUsages;
+
 use super::inputs::Input;
 use super::load::{COLOR, Content};
 use super::meshes::Meshes;
@@ -71,6 +73,15 @@ impl Session {
     /// The plan of the scene's graph, once it is built.
     pub fn plan(&self) -> Option<&Plan> {
         self.graph.as_ref().map(Runner::plan)
+    }
+
+    /// The plan of the graph that presents the picture, once it is built.
+    pub fn present_plan(&self) -> Option<&Plan> {
+        self.present.as_ref().map(Runner::plan)
+    }
+
+    pub fn content(&self) -> Option<&Content> {
+        self.content.as_ref()
     }
 
     /// Builds content beside what is there, and swaps it in if all of it works.
@@ -158,8 +169,13 @@ impl Builder {
         let mut plan = plan::instantiate(&content.program, &request)?;
         let (id, color) = picture(&plan)?;
         let request = content.present_request(color, gpu.features(), gpu.limits());
-        let present = plan::instantiate(&content.present, &request)?;
+        let mut present = plan::instantiate(&content.present, &request)?;
         share_usages(&mut plan, id, &present);
+        let (id, _) = picture(&present)?;
+        if let ObjectKind::Texture(texture) = &mut present.objects[id].kind {
+            // Windows sample it.
+            texture.usages |= TextureUsages::TEXTURE_BINDING;
+        }
         Ok(Planned { content, plan, present, compiled: Compiled::default() })
     }
 

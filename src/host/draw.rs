@@ -6,14 +6,14 @@ use std::time::Instant;
 use super::build::{Session, is_color, move_meshes};
 use super::inputs::Input;
 use super::load::Content;
-use super::picture::Texels;
+use super::picture::{self, PictureKind, Texels};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::engine::{Frame, Report, Runner, TextureData};
 use crate::graph::value::Value;
 use crate::plan::model::{ObjectKind, ObjectRef, Plan};
 
 /// Frames a second, where nobody says.
-const FRAMES_PER_SECOND: f64 = 60.0;
+pub(super) const FRAMES_PER_SECOND: f64 = 60.0;
 /// A frame is repeated with more room at most so often.
 const MOST_REPEATS: usize = 12;
 
@@ -126,7 +126,7 @@ impl Session {
     }
 
     /// Whether counted buffers need more room than they had, which they get.
-    fn has_grown(&mut self, report: &Report, notes: &mut Diagnostics) -> Result<bool, Diagnostics> {
+    pub(super) fn has_grown(&mut self, report: &Report, notes: &mut Diagnostics) -> Result<bool, Diagnostics> {
         let mut errors = Diagnostics::new();
         let mut grown = false;
         for count in report.overflows() {
@@ -172,6 +172,25 @@ impl Session {
         self.texels(output.object)
     }
 
+    /// The picture that was drawn last, as a file's bytes.
+    ///
+    /// # Errors
+    /// If nothing was drawn, or the device or the encoder fails.
+    pub fn encoded(&mut self, kind: PictureKind, transparent: bool) -> Result<Vec<u8>, Diagnostic> {
+        let encoded = match kind {
+            PictureKind::Png => {
+                let data = self.presented()?;
+                if data.format != crate::format::TextureFormat::Rgba16Float {
+                    let message = "the presenting graph's output is not `Rgba16Float`";
+                    return Err(Diagnostic::error(Code::FORMAT, message));
+                }
+                picture::presented_png([data.width, data.height], &data.bytes, transparent)
+            }
+            PictureKind::Exr => picture::exr(&self.light()?),
+        };
+        encoded.map_err(|why| Diagnostic::error(Code::OUTPUT, format!("the picture cannot be encoded: {why}")))
+    }
+
     /// Any texture's first mip, layers one below the other.
     ///
     /// # Errors
@@ -208,7 +227,7 @@ impl Session {
     }
 }
 
-fn nothing() -> Diagnostic {
+pub(super) fn nothing() -> Diagnostic {
     Diagnostic::error(Code::DEVICE, "nothing was drawn yet")
 }
 
@@ -217,7 +236,7 @@ fn finish(runner: &mut Option<Runner>, engine: &crate::engine::Engine) -> Result
 }
 
 /// The value of every field of every live input, as `input.field`.
-fn live_values(content: &Content, inputs: &BTreeMap<String, Input>) -> BTreeMap<String, Value> {
+pub(super) fn live_values(content: &Content, inputs: &BTreeMap<String, Input>) -> BTreeMap<String, Value> {
     let mut values = BTreeMap::new();
     for (name, input) in inputs {
         for field in input.fields() {

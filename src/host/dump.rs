@@ -75,6 +75,40 @@ pub fn write(items: &Items<'_>, kind: DumpKind) -> Result<Vec<u8>, String> {
     }
 }
 
+/// A number of an item.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Cell {
+    Float(f32),
+    Int(i64),
+}
+
+/// Items as rows of numbers under names.
+#[derive(Clone, Debug)]
+pub struct Table {
+    columns: Vec<Column>,
+}
+
+impl Table {
+    pub fn of(items: &Items<'_>) -> Self {
+        Self { columns: columns(items) }
+    }
+
+    /// The names of an item's numbers.
+    pub fn headings(&self) -> impl Iterator<Item = &str> {
+        self.columns.iter().map(|c| c.name.as_str())
+    }
+
+    /// The numbers of an item, whose bytes these are.
+    pub fn cells<'a>(&'a self, row: &'a [u8]) -> impl Iterator<Item = Cell> + 'a {
+        self.columns.iter().map(|c| match c.lane {
+            (at, Scalar::F32) => Cell::Float(f32::from_le_bytes(word(row, at))),
+            (at, Scalar::F16) => Cell::Float(half_at(row, at)),
+            (at, Scalar::I32) => Cell::Int(i32::from_le_bytes(word(row, at)).into()),
+            (at, Scalar::U32 | Scalar::Other) => Cell::Int(u32::from_le_bytes(word(row, at)).into()),
+        })
+    }
+}
+
 fn columns(items: &Items<'_>) -> Vec<Column> {
     let Some(ty) = items.item else {
         return (0..items.stride as u32 / 4)

@@ -1,7 +1,7 @@
 //! Pictures as files: PNG for screens, OpenEXR for light.
 
 use std::io::Cursor;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use half::f16;
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
@@ -121,6 +121,20 @@ pub fn exr(texels: &Texels) -> Result<Vec<u8>, String> {
     Ok(bytes)
 }
 
+/// The name of the picture of a frame: `{}` in the name, or before its extension, the number.
+pub fn numbered(path: &Path, frame: u64) -> PathBuf {
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    let number = format!("{frame:04}");
+    let numbered = match name.split_once("{}") {
+        Some((before, after)) => format!("{before}{number}{after}"),
+        None => match name.rsplit_once('.') {
+            Some((stem, end)) => format!("{stem}_{number}.{end}"),
+            None => format!("{name}_{number}"),
+        },
+    };
+    path.with_file_name(numbered)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -160,5 +174,11 @@ mod tests {
         assert_eq!(PictureKind::of(Path::new("c.exr")), Some(PictureKind::Exr));
         assert_eq!(PictureKind::of(Path::new("c.jpg")), None);
         assert_eq!(PictureKind::of(Path::new("png")), None);
+    }
+
+    #[test]
+    fn frames_are_numbered() {
+        assert_eq!(numbered(Path::new("out/a.png"), 7), Path::new("out/a_0007.png"));
+        assert_eq!(numbered(Path::new("out/{}-a.png"), 12345), Path::new("out/12345-a.png"));
     }
 }

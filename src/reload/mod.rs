@@ -6,4 +6,4 @@
 
 mod watch;
 
-pub use watch::{Change, Watch};
+pub use watch::{Change, Waker, Watch};

@@ -5,7 +5,7 @@
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
-use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::time::{Duration, Instant, SystemTime};
 
 use notify::event::{EventKind, ModifyKind};
@@ -18,18 +18,31 @@ const QUIET: Duration = Duration::from_millis(15);
 /// A burst that does not end is a change all the same.
 const LONGEST_BURST: Duration = Duration::from_millis(200);
 
-type Event = notify::Result<notify::Event>;
+/// Something that happened to a file; absent: somebody wants [`Watch::next`] to return.
+type Event = Option<notify::Result<notify::Event>>;
 
 /// Watches a set of files.
 #[derive(Debug)]
 pub struct Watch {
     watcher: RecommendedWatcher,
     events: Receiver<(Instant, Event)>,
+    waker: Waker,
     /// Absolute paths.
     files: BTreeSet<PathBuf>,
     folders: BTreeSet<PathBuf>,
     /// Files that changed while they were not watched yet.
     missed: BTreeSet<PathBuf>,
+}
+
+/// Ends the wait of a [`Watch`] from another thread.
+#[derive(Clone, Debug)]
+pub struct Waker(Sender<(Instant, Event)>);
+
+impl Waker {
+    pub fn wake(&self) {
+        // A watch that is gone does not wait.
+        _ = self.0.send((Instant::now(), None));
+    }
 }
 
 /// What changed in a burst of events.
@@ -48,10 +61,16 @@ impl Watch {
     /// If the system has no more room for watchers.
     pub fn new() -> notify::Result<Self> {
         let (sender, events) = channel();
+        let waker = Waker(sender.clone());
         // A receiver that is gone wants no events.
-        let watcher = notify::recommended_watcher(move |event| _ = sender.send((Instant::now(), event)))?;
+        let watcher = notify::recommended_watcher(move |event| _ = sender.send((Instant::now(), Some(event))))?;
         let (files, folders, missed) = <(BTreeSet<_>, BTreeSet<_>, BTreeSet<_>)>::default();
-        Ok(Self { watcher, events, files, folders, missed })
+        Ok(Self { watcher, events, waker, files, folders, missed })
+    }
+
+    /// What ends a wait in [`Watch::next`].
+    pub fn waker(&self) -> Waker {
+        self.waker.clone()
     }
 
     /// Watches exactly `paths` from now on. Files that were not watched before and that were saved
@@ -80,7 +99,7 @@ impl Watch {
         Ok(())
     }
 
-    /// Waits for a change; `None` if there is none within `patience`.
+    /// Waits for a change; `None` if there is none within `patience`, or if somebody wakes it.
     ///
     /// # Errors
     /// If the system stops telling of changes.
@@ -95,7 +114,9 @@ impl Watch {
                 _ => deadline,
             };
             match self.events.recv_timeout(until.saturating_duration_since(Instant::now())) {
-                Ok((at, event)) => {
+                Ok((_, None)) if first.is_none() => return Ok(None),
+                Ok((_, None)) => {}
+                Ok((at, Some(event))) => {
                     let found = self.relevant(&event?);
                     if !found.is_empty() {
                         first.get_or_insert(at);

@@ -5,6 +5,7 @@
 
 pub mod camera;
 pub mod convert;
+pub mod edit;
 pub mod framing;
 pub mod image;
 pub mod meshes;

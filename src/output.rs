@@ -41,6 +41,10 @@ impl Output {
     /// # Errors
     /// If the disk is full or the file cannot be replaced; then what was there stays.
     pub fn write(self, bytes: &[u8]) -> Result<(), Diagnostic> {
+        if let Ok(before) = fs::metadata(&self.path) {
+            // Who may read and write it stays as it was, where the system lets us say so.
+            _ = fs::set_permissions(&self.partial, before.permissions());
+        }
         let written = fs::write(&self.partial, bytes).and_then(|()| fs::rename(&self.partial, &self.path));
         written.map_err(|error| {
             Diagnostic::error(Code::OUTPUT, format!("`{}` cannot be written: {error}", self.path.display()))

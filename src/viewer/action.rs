@@ -1,0 +1,58 @@
+//! What a person asked for, from the interface to [`super::core::Core`].
+
+use std::path::PathBuf;
+
+use super::core::Recording;
+use super::look::Look;
+use crate::graph::value::Value;
+use crate::scene::Camera;
+
+#[derive(Clone, Debug, PartialEq)]
+pub enum Action {
+    /// A scene, a graph, particles or a picture.
+    Open(PathBuf),
+    /// Another value of a parameter; absent: the scene's, or the declared one.
+    Set {
+        path: String,
+        value: Option<Value>,
+    },
+    /// All values as the files have them.
+    ResetParams,
+    /// Puts the changed values into the scene file.
+    SaveParams,
+    /// Puts the camera into the scene file.
+    SaveCamera,
+    Camera(Camera),
+    /// Looks at all of the content from where the camera stands.
+    Frame,
+    /// The scene's own camera.
+    Home,
+    /// All state as at the start.
+    Restart,
+    /// Reads everything again.
+    Reload,
+    Play(bool),
+    /// By frames, also back.
+    Step(i64),
+    /// To a time in seconds.
+    Seek(f64),
+    /// Seconds that pass in one second.
+    Speed(f64),
+    Switch {
+        pass: String,
+        on: bool,
+    },
+    /// Opens a place in an editor; line and column from 1.
+    Edit {
+        path: PathBuf,
+        line: u32,
+        column: u32,
+    },
+    Look(Option<Look>),
+    /// Finds the first pass that writes NaN or infinity.
+    Hunt,
+    /// Writes the picture.
+    Shoot(PathBuf),
+    Record(Recording),
+    StopRecording,
+}

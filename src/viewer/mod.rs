@@ -1,0 +1,43 @@
+//! The window: a picture that follows its files, the camera and every parameter, and a look at
+//! whatever makes it.
+//!
+//! [`core`] holds what happens, without a window: it takes news from [`worker`] (a thread that
+//! loads, checks, plans and compiles), submits frames to a [`crate::host::Session`], and keeps
+//! [`state`]. [`ui`] draws that state with egui and gives back [`action::Action`]s. [`app`] is the
+//! event loop. Only `app`, `painter` and `ui` know winit and egui, so that the rest is tested
+//! without a display.
+
+mod action;
+mod app;
+mod camera;
+mod clock;
+pub mod core;
+mod editor;
+mod history;
+mod inspect;
+mod look;
+mod painter;
+mod params;
+mod state;
+mod ui;
+mod worker;
+
+use crate::diagnostic::Diagnostics;
+use crate::host::Job;
+
+/// What the window opens with.
+#[derive(Clone, Debug, Default)]
+pub struct Options {
+    /// Absent: a page that lists scenes.
+    pub job: Option<Job>,
+    /// The graphics interface to use.
+    pub backend: Option<String>,
+}
+
+/// Opens the window and stays until it is closed.
+///
+/// # Errors
+/// If there is no display or no usable adapter, or the device was lost for good.
+pub fn run(options: Options) -> Result<(), Diagnostics> {
+    app::run(options)
+}

@@ -1,0 +1,77 @@
+//! The bar at the top: what is open, and what can be done with it.
+
+use egui::{ComboBox, Panel, Ui};
+
+use super::{Layout, Scale};
+use crate::viewer::action::Action;
+use crate::viewer::core::Core;
+use crate::viewer::state::short;
+
+pub fn draw(ui: &mut Ui, core: &Core, layout: &mut Layout, actions: &mut Vec<Action>) {
+    Panel::top("top").show(ui, |ui| {
+        ui.add_space(2.0);
+        ui.horizontal(|ui| {
+            let Some(job) = &core.state.job else {
+                ui.strong("Meniscus");
+                return;
+            };
+            ui.strong(short(&job.source)).on_hover_text(job.source.display().to_string());
+            if let Some(plan) = core.plan() {
+                ui.weak("drawn by");
+                ui.label(short(&plan.graph)).on_hover_text(plan.graph.display().to_string());
+            }
+            ui.separator();
+            if ui.button("Frame").on_hover_text("look at everything (F)").clicked() {
+                actions.push(Action::Frame);
+            }
+            if ui.button("Home").on_hover_text("the scene's own camera (H)").clicked() {
+                actions.push(Action::Home);
+            }
+            viewpoints(ui, core, layout, actions);
+            ui.separator();
+            ComboBox::from_id_salt("scale").selected_text(layout.scale.name()).width(96.0).show_ui(ui, |ui| {
+                for scale in Scale::ALL {
+                    ui.selectable_value(&mut layout.scale, scale, scale.name());
+                }
+            });
+            if ui.button("Picture...").on_hover_text("write a picture, or record a sequence").clicked() {
+                layout.capture.open(core);
+            }
+            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+                ui.toggle_value(&mut layout.shows_help, "Help").on_hover_text("keys and mouse (F1)");
+                ui.separator();
+                ui.toggle_value(&mut layout.shows_side, "Passes");
+                ui.toggle_value(&mut layout.shows_params, "Parameters");
+                if core.state.findings.is_some() {
+                    ui.toggle_value(&mut layout.shows_messages, "Messages");
+                }
+            });
+        });
+        ui.add_space(2.0);
+    });
+}
+
+fn viewpoints(ui: &mut Ui, core: &Core, layout: &mut Layout, actions: &mut Vec<Action>) {
+    ui.menu_button("Views", |ui| {
+        for (slot, place) in layout.viewpoints.iter_mut().enumerate() {
+            let number = slot + 1;
+            ui.horizontal(|ui| {
+                let go = ui.add_enabled(place.is_some(), egui::Button::new(format!("go to {number}")));
+                if go.clicked()
+                    && let Some(camera) = place
+                {
+                    actions.push(Action::Camera(*camera));
+                }
+                if ui.button("keep here").on_hover_text(format!("Ctrl + {number}")).clicked() {
+                    *place = core.state.camera;
+                }
+            });
+        }
+        ui.separator();
+        let save = ui.button("Save the camera to the scene");
+        if save.on_hover_text("its `camera:` becomes this one; all else stays").clicked() {
+            actions.push(Action::SaveCamera);
+            ui.close();
+        }
+    });
+}

@@ -1,0 +1,282 @@
+//! The thread that loads, checks, plans and compiles, so that no frame waits for any of it. It
+//! watches what it last read, and answers each change and each wish with a [`Round`].
+
+use std::path::PathBuf;
+use std::sync::mpsc::{Receiver, Sender, TryRecvError, channel};
+use std::thread::{self, JoinHandle};
+use std::time::{Duration, Instant, SystemTime};
+
+use super::params::{self, Overrides};
+use crate::diagnostic::{Code, Diagnostic, Diagnostics, Sources};
+use crate::files::DiskFiles;
+use crate::host::{Builder, Cache, Content, Job, Planned, load};
+use crate::reload::{Waker, Watch};
+
+/// What the window wants beside what files say.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Wants {
+    pub params: Overrides,
+    /// Pixels; absent: as the scene says.
+    pub viewport: Option<[u32; 2]>,
+    /// Instance paths that are looked at.
+    pub roots: Vec<String>,
+}
+
+/// Why the worker worked.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Cause {
+    Opened(PathBuf),
+    Changed(Vec<PathBuf>),
+    Wanted,
+}
+
+/// One piece of work, done.
+#[derive(Debug)]
+pub struct Round {
+    pub cause: Cause,
+    /// Absent if something had an error.
+    pub planned: Option<Box<Planned>>,
+    /// The content as files say, without what the window wants; absent if it was not read anew.
+    pub read: Option<Box<Content>>,
+    pub diagnostics: Diagnostics,
+    pub sources: Sources,
+    pub noticing: Duration,
+    pub checking: Duration,
+    pub building: Duration,
+}
+
+#[derive(Debug)]
+enum Order {
+    Open(Box<Job>),
+    Reload,
+    Want(Wants),
+    /// Another device, or more room.
+    Build(Box<Builder>),
+}
+
+/// The other end of the thread.
+#[derive(Debug)]
+pub struct Worker {
+    orders: Option<Sender<Order>>,
+    waker: Waker,
+    rounds: Receiver<Round>,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl Worker {
+    /// Starts the thread. `news` is called whenever a round can be taken.
+    ///
+    /// # Errors
+    /// If the system has no more room for watchers.
+    pub fn start(builder: Builder, news: impl Fn() + Send + 'static) -> Result<Self, Diagnostic> {
+        let watch = Watch::new().map_err(|error| blind(&error))?;
+        let waker = watch.waker();
+        let (orders, inbox) = channel();
+        let (outbox, rounds) = channel();
+        let thread = thread::spawn(move || {
+            let mut bench = Bench {
+                builder,
+                watch,
+                inbox,
+                outbox,
+                news: Box::new(news),
+                job: None,
+                wants: Wants::default(),
+                cache: Cache::default(),
+                content: None,
+                sources: Sources::new(),
+                diagnostics: Diagnostics::new(),
+            };
+            bench.work();
+        });
+        Ok(Self { orders: Some(orders), waker, rounds, thread: Some(thread) })
+    }
+
+    pub fn open(&self, job: Job) {
+        self.send(Order::Open(Box::new(job)));
+    }
+
+    pub fn reload(&self) {
+        self.send(Order::Reload);
+    }
+
+    pub fn want(&self, wants: Wants) {
+        self.send(Order::Want(wants));
+    }
+
+    pub fn build_with(&self, builder: Builder) {
+        self.send(Order::Build(Box::new(builder)));
+    }
+
+    /// A round that is done, oldest first.
+    pub fn take(&self) -> Option<Round> {
+        self.rounds.try_recv().ok()
+    }
+
+    fn send(&self, order: Order) {
+        if let Some(orders) = &self.orders {
+            // A thread that is gone does nothing any more; the window still runs.
+            _ = orders.send(order);
+            self.waker.wake();
+        }
+    }
+}
+
+impl Drop for Worker {
+    fn drop(&mut self) {
+        self.orders = None;
+        self.waker.wake();
+        if let Some(thread) = self.thread.take() {
+            // A panic there was told by the runtime.
+            _ = thread.join();
+        }
+    }
+}
+
+struct Bench {
+    builder: Builder,
+    watch: Watch,
+    inbox: Receiver<Order>,
+    outbox: Sender<Round>,
+    news: Box<dyn Fn() + Send>,
+    job: Option<Box<Job>>,
+    wants: Wants,
+    cache: Cache,
+    /// As files say.
+    content: Option<Content>,
+    /// Texts that the content was read from.
+    sources: Sources,
+    /// What reading them found.
+    diagnostics: Diagnostics,
+}
+
+impl Bench {
+    fn work(&mut self) {
+        loop {
+            let (mut load, mut plan) = (None, false);
+            loop {
+                match self.inbox.try_recv() {
+                    Ok(Order::Open(job)) => {
+                        load = Some(Cause::Opened(job.source.clone()));
+                        self.job = Some(job);
+                        self.content = None;
+                    }
+                    Ok(Order::Reload) => load = load.or(Some(Cause::Changed(Vec::new()))),
+                    Ok(Order::Want(wants)) => {
+                        plan |= wants != self.wants;
+                        self.wants = wants;
+                    }
+                    Ok(Order::Build(builder)) => {
+                        self.builder = *builder;
+                        plan = true;
+                    }
+                    Err(TryRecvError::Empty) => break,
+                    Err(TryRecvError::Disconnected) => return,
+                }
+            }
+            if let Some(cause) = load {
+                self.load(cause, Duration::ZERO);
+            } else if plan && self.content.is_some() {
+                let began = Instant::now();
+                self.plan(Cause::Wanted, Duration::ZERO, began);
+            } else {
+                self.wait();
+            }
+        }
+    }
+
+    fn wait(&mut self) {
+        match self.watch.next(Duration::from_secs(3600)) {
+            Ok(Some(change)) => {
+                let noticing = change.noticing;
+                self.load(Cause::Changed(change.files), noticing);
+            }
+            Ok(None) => {}
+            Err(error) => {
+                self.tell_blind(&error);
+                // Without events nothing but orders can come.
+                thread::sleep(Duration::from_millis(200));
+            }
+        }
+    }
+
+    fn load(&mut self, cause: Cause, noticing: Duration) {
+        let Some(job) = self.job.clone() else { return };
+        let (since, began) = (SystemTime::now(), Instant::now());
+        let mut sources = Sources::new();
+        let loaded = load(&DiskFiles, &mut sources, &job, &mut self.cache);
+        if let Err(error) = self.watch.set(loaded.read.iter().map(PathBuf::as_path), since) {
+            self.tell_blind(&error);
+        }
+        match loaded.content {
+            Some(content) => {
+                (self.sources, self.diagnostics) = (sources, loaded.diagnostics);
+                self.content = Some(content);
+                self.plan(cause, noticing, began);
+            }
+            None => {
+                let checking = began.elapsed();
+                self.send(Round {
+                    cause,
+                    planned: None,
+                    read: None,
+                    diagnostics: loaded.diagnostics,
+                    sources,
+                    noticing,
+                    checking,
+                    building: Duration::ZERO,
+                });
+            }
+        }
+    }
+
+    fn plan(&mut self, cause: Cause, noticing: Duration, began: Instant) {
+        let Some(read) = self.content.clone() else { return };
+        let mut content = read.clone();
+        params::apply(&mut content, &self.wants.params);
+        content.viewport = self.wants.viewport.unwrap_or(content.viewport);
+        let mut diagnostics = self.diagnostics.clone();
+        let looked_at = content.roots.iter().chain(&self.wants.roots).cloned().collect();
+        let wanted = Content { roots: looked_at, ..content.clone() };
+        // What is looked at may be gone from the graph: that hinders no picture.
+        let planned = self.builder.plan(wanted).or_else(|_| self.builder.plan(content));
+        let checking = began.elapsed();
+        let began = Instant::now();
+        let compiled = planned.and_then(|mut planned| self.builder.compile(&mut planned).map(|()| planned));
+        let planned = match compiled {
+            Ok(planned) => Some(Box::new(planned)),
+            Err(found) => {
+                diagnostics.extend(found);
+                None
+            }
+        };
+        let read = (cause != Cause::Wanted).then(|| Box::new(read));
+        let sources = self.sources.clone();
+        let building = began.elapsed();
+        self.send(Round { cause, planned, read, diagnostics, sources, noticing, checking, building });
+    }
+
+    fn tell_blind(&mut self, error: &notify::Error) {
+        self.send(Round {
+            cause: Cause::Changed(Vec::new()),
+            planned: None,
+            read: None,
+            diagnostics: blind(error).into(),
+            sources: Sources::new(),
+            noticing: Duration::ZERO,
+            checking: Duration::ZERO,
+            building: Duration::ZERO,
+        });
+    }
+
+    fn send(&self, round: Round) {
+        // A window that is gone wants no news.
+        _ = self.outbox.send(round);
+        (self.news)();
+    }
+}
+
+fn blind(error: &notify::Error) -> Diagnostic {
+    let message = format!("changes cannot be watched: {error}");
+    Diagnostic::error(Code::OUTPUT, message).hint("on Linux, `sysctl fs.inotify.max_user_watches` may be too low")
+}
