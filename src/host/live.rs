@@ -43,11 +43,12 @@ pub enum Read {
 }
 
 impl Session {
-    /// Submits one frame of the graph. Waits for nothing.
+    /// Submits what has to run for a frame of the graph, and tells which units do and why. Waits for
+    /// nothing.
     ///
     /// # Errors
     /// If nothing was built, or the device refuses something or is lost.
-    pub fn submit(&mut self, live: &Live<'_>) -> Result<(), Diagnostics> {
+    pub fn submit(&mut self, live: &Live<'_>) -> Result<Report, Diagnostics> {
         let (Some(content), Some(runner)) = (&mut self.content, &mut self.graph) else { return Err(nothing().into()) };
         content.camera = live.camera;
         let values = live_values(content, &content.inputs);
@@ -59,7 +60,7 @@ impl Session {
             live: &|name, _| values.get(name).cloned(),
             only: live.only,
         };
-        runner.run(&self.engine, &frame).map(|_| ())
+        runner.run(&self.engine, &frame)
     }
 
     /// Presents what the graph made last, and puts it on a screen. Tells whether the screen's
@@ -95,7 +96,10 @@ impl Session {
     /// # Errors
     /// As [`Session::submit`].
     pub fn run_part(&mut self, live: &Live<'_>) -> Result<(), Diagnostics> {
-        self.submit(live).map(|_| ())
+        self.run_all(true);
+        let ran = self.submit(live);
+        self.run_all(false);
+        ran.map(|_| ())
     }
 
     /// What an object has now, of a texture one layer of one mip. Waits for the device.

@@ -48,6 +48,8 @@ pub enum Action {
         line: u32,
         column: u32,
     },
+    /// Whether every pass runs in each frame, also those whose results are there.
+    RunAll(bool),
     Look(Option<Look>),
     /// Finds the first pass that writes NaN or infinity.
     Hunt,

@@ -294,8 +294,13 @@ impl Core {
         };
         self.stepped_s = Some(made.time_s);
         self.made = Some(made.clone());
-        self.run_all = false;
-        let drawn = self.session.submit(&live).and_then(|()| self.session.show(&live, &mut self.screen));
+        self.session.run_all(self.run_all || self.state.runs_all);
+        let ran = self.session.submit(&live);
+        let drawn = ran.and_then(|report| {
+            self.run_all = false;
+            self.state.units = report.units;
+            self.session.show(&live, &mut self.screen)
+        });
         match drawn {
             Ok(changed) => {
                 self.screen_changed |= changed;
@@ -465,6 +470,10 @@ impl Core {
                 if let Err(why) = editor::open(&path, line, column) {
                     self.state.say(why);
                 }
+            }
+            Action::RunAll(on) => {
+                self.state.runs_all = on;
+                self.version += 1;
             }
             Action::Look(look) => self.state.look = look,
             Action::Hunt => self.state.hunt = Some(Hunt::default()),

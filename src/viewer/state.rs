@@ -12,6 +12,7 @@ use super::history::Times;
 use super::look::{Look, Seen};
 use super::params::{Group, Overrides};
 use crate::diagnostic::{Diagnostics, Severity, Sources};
+use crate::engine::UnitReport;
 use crate::graph::value::Value;
 use crate::host::{Content, Input, Job};
 use crate::scene::Camera;
@@ -43,6 +44,10 @@ pub struct State {
     pub switched_off: BTreeSet<String>,
     /// Of the graph, and of the presenting one.
     pub times: [Times; 2],
+    /// Which units ran in the last frame, and why.
+    pub units: Vec<UnitReport>,
+    /// Every pass runs in each frame, also those whose results are there.
+    pub runs_all: bool,
     pub findings: Option<Findings>,
     /// The newest first.
     pub reloads: VecDeque<Reload>,

@@ -3,6 +3,7 @@
 use egui::{RichText, ScrollArea, Sense, Stroke, Ui};
 
 use super::{Layout, Middle, theme};
+use crate::engine::UnitReport;
 use crate::plan::model::Plan;
 use crate::viewer::action::Action;
 use crate::viewer::core::Core;
@@ -22,6 +23,14 @@ pub fn draw(ui: &mut Ui, core: &Core, layout: &mut Layout, actions: &mut Vec<Act
             ui.weak(format!("presenting {:.2} ms", present.gpu.smooth));
         });
     });
+    let skipped = plan.passes.iter().filter(|p| core.state.units.get(p.unit).is_some_and(|unit| !unit.ran)).count();
+    ui.horizontal(|ui| {
+        ui.weak(format!("{} of {} passes ran", plan.passes.len() - skipped, plan.passes.len()));
+        let mut all = core.state.runs_all;
+        if ui.checkbox(&mut all, "run all").on_hover_text("also passes whose results are there already").changed() {
+            actions.push(Action::RunAll(all));
+        }
+    });
     ui.separator();
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
         rows(ui, core, plan, layout, actions);
@@ -38,7 +47,13 @@ fn rows(ui: &mut Ui, core: &Core, plan: &Plan, layout: &mut Layout, actions: &mu
                 actions.push(Action::Switch { pass: pass.path.clone(), on });
             }
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+                let unit = core.state.units.get(pass.unit).filter(|_| is_on && pass.steps.is_none());
                 match core.state.times[0].pass(&pass.path).filter(|_| is_on) {
+                    Some(series) if unit.is_some_and(|unit| !unit.ran) => {
+                        let text = RichText::new("skipped").color(theme::FAINT);
+                        ui.label(text).on_hover_text("nothing that it depends on has changed: its results are kept");
+                        plot(ui, series, [60.0, 14.0]);
+                    }
                     Some(series) => {
                         ui.monospace(format!("{:7.3} ms", series.smooth));
                         plot(ui, series, [60.0, 14.0]);
@@ -49,11 +64,24 @@ fn rows(ui: &mut Ui, core: &Core, plan: &Plan, layout: &mut Layout, actions: &mu
                     let text = RichText::new(&pass.path);
                     let text = if is_on { text } else { text.color(theme::FAINT).strikethrough() };
                     let label = ui.add(egui::Label::new(text).truncate().sense(Sense::click()));
-                    let label = label.on_hover_text(format!("{}\nclick: what it reads and writes", pass.path));
+                    let label =
+                        label.on_hover_text(format!("{}\n{}\nclick: what it reads and writes", pass.path, why(unit)));
                     egui::Popup::menu(&label).show(|ui| accesses(ui, plan, index, layout, actions));
                 });
             });
         });
+    }
+}
+
+/// Why a pass ran or did not.
+fn why(unit: Option<&UnitReport>) -> String {
+    match unit {
+        None => "runs with each step, or is switched off".into(),
+        Some(unit) if !unit.ran => "skipped: nothing that it depends on has changed".into(),
+        Some(unit) => {
+            let why: Vec<String> = unit.why.iter().map(ToString::to_string).collect();
+            format!("ran: {}", why.join(", "))
+        }
     }
 }
 
