@@ -3,10 +3,12 @@
 
 mod ball;
 mod device;
+mod field;
 mod grid;
 #[path = "../engine/harness.rs"]
 mod harness;
 mod particles;
+mod points;
 mod shapes;
 mod surfaces;
 
@@ -25,6 +27,10 @@ fn main() -> ExitCode {
         surfaces::a_splash_is_a_glass_ball,
         surfaces::tilted_planes_stay_planes,
         surfaces::noise_falls_more_than_by_the_bilateral_filter,
+        points::densities_are_the_sums,
+        points::surfels_lie_on_the_surface,
+        points::layouts_agree,
+        points::no_particles_and_no_level,
         surfaces::rims_stay_where_they_are,
     ])
 }
