@@ -8,6 +8,8 @@ struct LightScreen {
     region_max: vec2f,
     top_m: f32,
     bottom_m: f32,
+    // Pixels of the virtual screen.
+    screen_px: vec2f,
     ior: f32,
 }
 
@@ -27,14 +29,15 @@ fn bent_sun() -> vec3f {
     return vec3f(side.x, -sqrt(max(1.0 - dot(side, side), 0.0)), side.y);
 }
 
-/// Lowest and highest corner of the screen: the region, and where its light comes from.
+/// Lowest and highest corner of the screen: the region, and where its light comes from. The middles of the outermost
+/// pixels lie on its rim, so that beams between them cover it.
 fn screen_corners() -> vec4f {
     let bent = bent_sun();
     let away = bent.xz / bent.y * (light_screen.top_m - light_screen.bottom_m);
-    return vec4f(
-        min(light_screen.region_min, light_screen.region_min + away),
-        max(light_screen.region_max, light_screen.region_max + away),
-    );
+    let low = min(light_screen.region_min, light_screen.region_min + away);
+    let high = max(light_screen.region_max, light_screen.region_max + away);
+    let half_pixel = 0.5 * (high - low) / (light_screen.screen_px - 1.0);
+    return vec4f(low - half_pixel, high + half_pixel);
 }
 
 /// Where on the screen, from 0 to 1, the light comes through that would reach a point straight.

@@ -18,7 +18,7 @@ const TILES = 1u;
 const GROUND = 2u;
 
 /// Width of the joints as a share of a tile.
-const JOINT = 0.055;
+const JOINT = 0.045;
 
 struct PoolHit {
     kind: u32,
@@ -88,23 +88,23 @@ fn hash(at: vec2f) -> f32 {
     return fract((mixed.x + mixed.y) * mixed.x * 7.77);
 }
 
-fn tiles(at_m: vec2f, footprint_m: f32) -> vec3f {
-    let at = at_m / basin.tile_m;
-    let footprint = footprint_m / basin.tile_m;
+fn tiles(at_m: vec2f, footprint_m: f32, tile_m: f32, color: vec3f, joint_color: vec3f) -> vec3f {
+    let at = at_m / tile_m;
+    let footprint = footprint_m / tile_m;
     let joint = max(joints(at.x, footprint), joints(at.y, footprint));
     // Tiles differ a little, less so the smaller they are seen.
     let shade = mix(1.0, 0.86 + 0.28 * hash(floor(at) + 57.0), clamp(1.5 - footprint, 0.0, 1.0));
-    return mix(basin.tile_color * shade, vec3f(0.62, 0.62, 0.58), joint);
+    return mix(color * shade, joint_color, joint);
 }
 
 /// Premultiplied radiance of a point of the pool or of the ground, which fades out far away.
 fn pool_color(p: vec3f, normal: vec3f, kind: u32, footprint_m: f32) -> vec4f {
-    var albedo = basin.ground_color;
+    let at = select(select(p.xy, p.zy, abs(normal.x) > 0.5), p.xz, abs(normal.y) > 0.5);
+    let is_slab = kind == GROUND && has_walls();
+    let size = select(1.0, 3.0, is_slab) * basin.tile_m;
+    let color = select(basin.tile_color, basin.ground_color, is_slab);
+    let albedo = tiles(at, footprint_m, size, color, select(vec3f(0.62, 0.62, 0.58), 0.5 * color, is_slab));
     var alpha = 1.0;
-    if kind == TILES || !has_walls() {
-        let at = select(select(p.xy, p.zy, abs(normal.x) > 0.5), p.xz, abs(normal.y) > 0.5);
-        albedo = tiles(at, footprint_m);
-    }
     if kind == GROUND {
         let middle = 0.5 * (basin.pool_min + basin.pool_max);
         alpha = 1.0 - smoothstep(0.35, 1.0, length(p.xz - middle) / basin.ground_m);

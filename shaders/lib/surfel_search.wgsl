@@ -13,13 +13,8 @@ struct Params {
     gap: f32,
 }
 
-struct Appended {
-    count: atomic<u32>,
-    items: array<Surfel>,
-}
 
 var<uniform> params: Params;
-var<storage, read_write> surfels: Appended;
 
 const AXES = array<vec3i, 3>(vec3i(1, 0, 0), vec3i(0, 1, 0), vec3i(0, 0, 1));
 
@@ -76,32 +71,25 @@ fn values_along(at: vec3i, step: vec3i) -> vec4f {
     return vec4f(field(at - step), field(at), field(at + step), field(at + 2 * step));
 }
 
-/// Appends a surfel at a place counted in cells; `slope` is the gradient there.
-fn append(place: vec3f, slope: vec3f) {
-    let steep = dot(slope, slope);
-    if steep == 0.0 {
-        return;
-    }
-    let at = atomicAdd(&surfels.count, 1u);
-    if at < arrayLength(&surfels.items) {
-        let position = params.origin + params.spacing * place;
-        surfels.items[at] = Surfel(position, params.radius_m, -slope * inverseSqrt(steep));
-    }
+/// A point counted in cells, and the gradient there: 0 where there is no point.
+struct Found {
+    place: vec3f,
+    slope: vec3f,
 }
 
-/// The point on the edge from a grid point along an axis, if the surface crosses it.
-fn on_edge(at: vec3i, axis: u32) {
+/// The point on the edge from a grid point along an axis; nothing if the surface does not cross it.
+fn on_edge(at: vec3i, axis: u32) -> Found {
     let step = AXES[axis];
     let f = values_along(at, step);
     if inside(f.y) == inside(f.z) {
-        return;
+        return Found(vec3f(0.0), vec3f(0.0));
     }
     let t = crossing(f);
-    append(vec3f(at) + t * vec3f(step), mix(gradient(at), gradient(at + step), t));
+    return Found(vec3f(at) + t * vec3f(step), mix(gradient(at), gradient(at + step), t));
 }
 
 /// One more point in the middle of a face whose two crossings are far apart. The face spans axes u and v from `at`.
-fn in_face(at: vec3i, u: u32, v: u32) {
+fn in_face(at: vec3i, u: u32, v: u32) -> Found {
     let du = AXES[u];
     let dv = AXES[v];
     let corners = vec4f(field(at), field(at + du), field(at + dv), field(at + du + dv));
@@ -109,7 +97,7 @@ fn in_face(at: vec3i, u: u32, v: u32) {
     // Edges along u at v = 0 and 1, along v at u = 0 and 1.
     let crossed = vec4<bool>(sides.x != sides.y, sides.z != sides.w, sides.x != sides.z, sides.y != sides.w);
     if dot(vec4u(crossed), vec4u(1u)) != 2u {
-        return;
+        return Found(vec3f(0.0), vec3f(0.0));
     }
     let steps = (params.iso_level - corners.xzxy) / select(vec4f(1.0), corners.ywzw - corners.xzxy, crossed);
     var ends = array<vec2f, 4>(vec2f(steps.x, 0.0), vec2f(steps.y, 1.0), vec2f(0.0, steps.z), vec2f(1.0, steps.w));
@@ -126,7 +114,7 @@ fn in_face(at: vec3i, u: u32, v: u32) {
     }
     let span = abs(second - first);
     if length(span) <= params.gap {
-        return;
+        return Found(vec3f(0.0), vec3f(0.0));
     }
     // Across the shorter extent of the segment, through its middle.
     let middle = 0.5 * (first + second);
@@ -141,41 +129,10 @@ fn in_face(at: vec3i, u: u32, v: u32) {
         cubic(values_along(at + 2 * step, side), line),
     );
     if inside(f.y) == inside(f.z) {
-        return;
+        return Found(vec3f(0.0), vec3f(0.0));
     }
     let t = crossing(f);
     let near = mix(gradient(at), gradient(at + side), line);
     let far = mix(gradient(at + step), gradient(at + step + side), line);
-    append(vec3f(at) + t * vec3f(step) + line * vec3f(side), mix(near, far, t));
-}
-
-/// All points that belong to the grid points of a slab above one texel.
-fn search(texel: vec2i, slab: i32) {
-    let here = four_planes(texel, slab);
-    let above = four_planes(texel, slab + 1);
-    let right = four_planes(texel + vec2i(1, 0), slab);
-    let down = four_planes(texel + vec2i(0, 1), slab);
-    let diagonal = four_planes(texel + vec2i(1, 1), slab);
-    let all_here = array<vec4f, 4>(here, right, down, diagonal);
-    var any_inside = inside(above.x);
-    var all_inside = any_inside;
-    for (var k = 0u; k < 4u; k++) {
-        let sides = all_here[k] >= vec4f(params.iso_level);
-        any_inside |= any(sides);
-        all_inside &= all(sides);
-    }
-    let right_above = four_planes(texel + vec2i(1, 0), slab + 1).x;
-    let down_above = four_planes(texel + vec2i(0, 1), slab + 1).x;
-    any_inside |= inside(right_above) || inside(down_above);
-    all_inside &= inside(right_above) && inside(down_above);
-    if !any_inside || all_inside {
-        return;
-    }
-    for (var k = 0; k < 4; k++) {
-        let at = vec3i(texel.x, 4 * slab + k, texel.y);
-        for (var axis = 0u; axis < 3u; axis++) {
-            on_edge(at, axis);
-            in_face(at, axis, (axis + 1u) % 3u);
-        }
-    }
+    return Found(vec3f(at) + t * vec3f(step) + line * vec3f(side), mix(near, far, t));
 }

@@ -65,6 +65,26 @@ pub fn at_grid_points(positions: &[[f32; 3]], layout: &Layout, f: impl Fn(f64) -
     sums
 }
 
+/// Density between grid points, trilinear; nothing outside.
+pub fn between(sums: &[f64], layout: &Layout, p: [f64; 3]) -> f64 {
+    let at = [0, 1, 2].map(|k| (p[k] - layout.origin[k]) / layout.spacing);
+    if (0..3).any(|k| at[k] < 0.0 || at[k] >= (layout.points[k] - 1) as f64) {
+        return 0.0;
+    }
+    let mut sum = 0.0;
+    for corner in 0..8 {
+        let mut weight = 1.0;
+        let index = [0, 1, 2].map(|k| {
+            let part = at[k].fract();
+            let upper = corner >> k & 1;
+            weight *= if upper == 1 { part } else { 1.0 - part };
+            at[k] as usize + upper
+        });
+        sum += weight * sums[layout.index(index[0], index[1], index[2])];
+    }
+    sum
+}
+
 /// The field anywhere, by cells of one effective radius.
 #[derive(Debug)]
 pub struct Field<'a> {

@@ -1,5 +1,4 @@
-// Surfels of one slab of four grid planes, with the slabs below and above it for what crosses over and for gradients.
-#import "lib/surfel_search.wgsl"
+// Densities of one slab of four grid planes, with the slabs below and above it.
 
 struct Slab {
     columns: u32,
@@ -25,11 +24,4 @@ fn four_planes(texel: vec2i, slab: i32) -> vec4f {
         return textureLoad(above, texel, 0);
     }
     return textureLoad(below, texel, 0);
-}
-
-@compute @workgroup_size(8, 8)
-fn extract(@builtin(global_invocation_id) id: vec3u) {
-    if all(id.xy < vec2u(slab_of.columns, slab_of.rows)) {
-        search(vec2i(id.xy), slab_of.slab_below);
-    }
 }

@@ -1,5 +1,4 @@
-// Surfels of the whole volume, from an atlas of slabs of four grid planes each.
-#import "lib/surfel_search.wgsl"
+// Densities from an atlas of slabs of four grid planes each.
 
 struct Tiles {
     columns: u32,
@@ -18,11 +17,4 @@ fn four_planes(texel: vec2i, slab: i32) -> vec4f {
         return vec4f(0.0);
     }
     return textureLoad(atlas, size * vec2i(slab % tiles, slab / tiles) + texel, 0);
-}
-
-@compute @workgroup_size(8, 8)
-fn extract(@builtin(global_invocation_id) id: vec3u) {
-    if all(id < vec3u(layout_of.columns, layout_of.rows, layout_of.slabs)) {
-        search(vec2i(id.xy), i32(id.z));
-    }
 }
