@@ -2,6 +2,9 @@
 #import "lib/camera.wgsl"
 #import "lib/surfel.wgsl"
 
+/// 1 where the eye is outside what the surfels enclose, -1 inside.
+var<storage, read> eye: array<f32>;
+
 /// Weight of a place on a disc, which is a radius of 1 wide: a Gaussian cut off at the rim.
 fn surfel_weight(side: vec2f) -> f32 {
     return exp(-3.0 * dot(side, side));
@@ -29,7 +32,7 @@ fn seen_along(p: vec3f) -> vec3f {
     return normalize(p - camera.position);
 }
 
-/// Whether a surfel is seen from outside.
+/// Whether a surfel shows the side on which the eye is.
 fn surfel_faces(surfel: Surfel) -> bool {
-    return dot(surfel.normal, seen_along(surfel.position)) < 0.0;
+    return eye[0] * dot(surfel.normal, seen_along(surfel.position)) < 0.0;
 }
