@@ -1,5 +1,6 @@
 // Points of an iso-surface on the edges of a grid, and between them where they are far apart (Iwasaki et al. 2006,
-// section 4.2). Who imports this gives `four_planes(texel, slab)`: the densities of the four grid planes of a slab.
+// section 4.2).
+#import "lib/density_planes.wgsl"
 #import "lib/surfel.wgsl"
 
 struct Params {

@@ -51,7 +51,7 @@ fn a_camera_changes_no_density_and_no_caustics() {
 /// Bytes of what holds densities, by the plan's own figures.
 fn densities(plan: &Plan, height: f64) -> u64 {
     let holds = |object: &&Object| {
-        let names = ["water.atlas", "water.below", "water.here", "water.above"];
+        let names = ["water.atlas", "water.ring"];
         names.contains(&object.path.as_str()) && object.lifetime.is_some()
     };
     let all: Vec<&Object> = plan.objects.iter().filter(holds).collect();

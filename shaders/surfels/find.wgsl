@@ -1,9 +1,13 @@
-// Finds the edges of a grid that a surface crosses, and the faces with two crossings. Who imports this gives
-// `four_planes(texel, slab)`: the densities of the four grid planes of a slab.
+// Finds where surfels are: the edges of the grid that the surface crosses, and the faces with two crossings (Iwasaki et
+// al. 2006, section 4.2). A thread looks at the grid points of a slab above one texel.
+#import "lib/density_planes.wgsl"
 #import "lib/grid_place.wgsl"
 
 struct Params {
     iso_level: f32,
+    columns: u32,
+    rows: u32,
+    first_slab: i32,
 }
 
 struct Places {
@@ -28,8 +32,13 @@ fn sides(texel: vec2i, slab: i32) -> u32 {
     return here.x | (here.y << 1u) | (here.z << 2u) | (here.w << 3u) | (above << 4u);
 }
 
-/// All places that belong to the grid points of a slab above one texel.
-fn find(texel: vec2i, slab: i32) {
+@compute @workgroup_size(8, 8)
+fn find(@builtin(global_invocation_id) id: vec3u) {
+    if any(id.xy >= vec2u(params.columns, params.rows)) {
+        return;
+    }
+    let texel = vec2i(id.xy);
+    let slab = params.first_slab + i32(id.z);
     let here = sides(texel, slab);
     let right = sides(texel + vec2i(1, 0), slab);
     let down = sides(texel + vec2i(0, 1), slab);

@@ -1,4 +1,4 @@
-// Surfels at the places that were found. Who imports this gives `four_planes`, as for `lib/surfel_search.wgsl`.
+// Surfels at the places that were found (Iwasaki et al. 2006, section 4.2).
 #import "lib/dispatch.wgsl"
 #import "lib/grid_place.wgsl"
 #import "lib/surfel_search.wgsl"
@@ -16,7 +16,9 @@ struct Appended {
 var<storage, read> places: Places;
 var<storage, read_write> surfels: Appended;
 
-fn place_surfel(i: u32) {
+@compute @workgroup_size(64)
+fn place(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
+    let i = linear_index(id, groups, 64u);
     if i >= places.count {
         return;
     }
