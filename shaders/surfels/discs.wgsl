@@ -24,8 +24,9 @@ struct Atlas {
 
 struct Disc {
     @builtin(position) clip: vec4f,
-    // The particle's place on the tile, in pixels.
+    // The particle's place among the grid points, and the pixel at which these begin: apart, since a sum would be rounded.
     @location(0) @interpolate(flat) middle: vec2f,
+    @location(2) @interpolate(flat) tile_corner: vec2f,
     // Squared distances of the four planes, in effective radii.
     @location(1) @interpolate(flat) away: vec4f,
 }
@@ -58,8 +59,9 @@ fn quad(p_m: vec3f, slab_index: u32, corner: u32) -> Disc {
     let radius = select(reach * sqrt(max(1.0 - nearest, 0.0)) + 0.5, 0.0, nearest >= 1.0);
     let side = vec2f(f32(corner & 1u), f32(corner >> 1u)) * 2.0 - 1.0;
     // Grid point i lies in the middle of pixel i.
-    out.middle = p.xz + tile_corner + 0.5;
-    let ndc = (out.middle + radius * side) / size * 2.0 - 1.0;
+    out.middle = p.xz;
+    out.tile_corner = tile_corner;
+    let ndc = (tile_corner + p.xz + 0.5 + radius * side) / size * 2.0 - 1.0;
     out.clip = vec4f(ndc.x, -ndc.y, 0.5, 1.0);
     return out;
 }
@@ -96,7 +98,7 @@ fn looked_up(a_2: f32) -> f32 {
 
 @fragment
 fn density(in: Disc) -> @location(0) vec4f {
-    let beside = (floor(in.clip.xy) + 0.5 - in.middle) * (params.spacing / params.reach_m);
+    let beside = (floor(in.clip.xy) - in.tile_corner - in.middle) * (params.spacing / params.reach_m);
     let a_2 = in.away + dot(beside, beside);
     if params.kernel == TABLE {
         return params.peak * vec4f(looked_up(a_2.x), looked_up(a_2.y), looked_up(a_2.z), looked_up(a_2.w));
