@@ -22,6 +22,8 @@ fn main() -> ExitCode {
         particles::ellipsoids_of_the_dam_break,
         particles::ellipsoids_of_third_parties,
         particles::ellipsoids_of_lone_and_heaped_particles,
+        particles::strays_are_small_groups,
+        particles::strays_do_not_depend_on_the_order_of_threads,
         surfaces::a_splash_is_a_glass_ball,
         surfaces::tilted_planes_stay_planes,
         surfaces::noise_falls_more_than_by_the_bilateral_filter,
