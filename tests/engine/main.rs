@@ -79,5 +79,6 @@ fn main() -> ExitCode {
         meshes::what_does_not_fit_is_told,
         shipped::imai2016,
         shipped::imai2014,
+        shipped::iwasaki2006,
     ])
 }

@@ -3,10 +3,14 @@
 
 mod ball;
 mod device;
+mod field;
 mod grid;
 #[path = "../engine/harness.rs"]
 mod harness;
+mod holes;
+mod light;
 mod particles;
+mod points;
 mod shapes;
 mod surfaces;
 
@@ -27,6 +31,15 @@ fn main() -> ExitCode {
         surfaces::a_splash_is_a_glass_ball,
         surfaces::tilted_planes_stay_planes,
         surfaces::noise_falls_more_than_by_the_bilateral_filter,
+        holes::no_holes_from_anywhere,
+        light::level_water_passes_the_flux,
+        light::waves_keep_the_light,
+        light::a_wave_focuses_as_a_lens_does,
+        light::light_from_below_lights_nothing,
+        points::densities_are_the_sums,
+        points::surfels_lie_on_the_surface,
+        points::layouts_agree,
+        points::no_particles_and_no_level,
         surfaces::rims_stay_where_they_are,
     ])
 }

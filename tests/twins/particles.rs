@@ -26,7 +26,7 @@ fn scattered(count: usize, box_size: [f32; 3]) -> Vec<[f32; 3]> {
 }
 
 /// A particle file of the repository or of the data beside it; says so where it is not there.
-fn file(name: &str) -> Option<Vec<[f32; 3]>> {
+pub fn file(name: &str) -> Option<Vec<[f32; 3]>> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(name);
     let Ok(bytes) = std::fs::read(&path) else {
         eprintln!("skipped: {name} is not there");
