@@ -48,27 +48,47 @@ impl Program {
     /// Whether `path` is the instance path of a parameter that a user can set, in any branch; if
     /// not, the paths that it could have been.
     pub fn has_param(&self, path: &str) -> Result<(), Vec<String>> {
-        let (mut graph, mut given): (&Graph, &[(Name, Expr)]) = (&self.root, &[]);
+        // Two branches may use two parts by one name.
+        let mut instances: Vec<(&Graph, &[(Name, Expr)])> = vec![(&self.root, &[])];
         let parts: Vec<&str> = path.split('.').collect();
         let (name, uses) = parts.split_last().unwrap_or((&path, &[]));
         let mut prefix = String::new();
         for part in uses {
-            let mut next = None;
-            each_node(&graph.passes, &mut |node| match &node.kind {
-                NodeKind::Use(used) if used.name.value == *part => next = Some(used),
-                _ => {}
-            });
-            let Some((used, inner)) = next.and_then(|used| Some((used, self.part(graph, &used.graph.value)?))) else {
+            let inside = self.used_as(&instances, part);
+            if inside.is_empty() {
                 break;
-            };
-            (graph, given) = (inner, &used.params);
+            }
+            instances = inside;
             prefix = format!("{prefix}{part}.");
         }
-        let is_given = |name: &Name| given.iter().any(|(other, _)| other.value == name.value);
-        let known = graph.params.iter().filter(|p| !is_given(&p.name)).map(|p| format!("{prefix}{}", p.name.value));
-        let known: Vec<String> = known.collect();
+        let mut known: Vec<String> = Vec::new();
+        for (graph, given) in instances {
+            let is_given = |name: &Name| given.iter().any(|(other, _)| other.value == name.value);
+            let names = graph.params.iter().filter(|p| !is_given(&p.name)).map(|p| format!("{prefix}{}", p.name.value));
+            known.extend(names);
+        }
         let is_whole = prefix.len() + name.len() == path.len();
         if is_whole && known.iter().any(|known| known == path) { Ok(()) } else { Err(known) }
+    }
+
+    /// The parts that graphs use by a name, each with the parameters that it is given.
+    fn used_as<'p>(
+        &'p self,
+        instances: &[(&'p Graph, &[(Name, Expr)])],
+        name: &str,
+    ) -> Vec<(&'p Graph, &'p [(Name, Expr)])> {
+        let mut found: Vec<(&Graph, &[(Name, Expr)])> = Vec::new();
+        for (graph, _) in instances {
+            each_node(&graph.passes, &mut |node| {
+                if let NodeKind::Use(used) = &node.kind
+                    && used.name.value == name
+                    && let Some(part) = self.part(graph, &used.graph.value)
+                {
+                    found.push((part, &used.params));
+                }
+            });
+        }
+        found
     }
 
     /// Each name as written and the file that was taken for it.

@@ -6,9 +6,13 @@
 mod generate;
 #[path = "../engine/harness.rs"]
 mod harness;
-mod world;
-
+#[path = "../support/planning.rs"]
+mod planning;
+mod poison;
 mod random;
+mod shipped;
+mod small;
+mod world;
 
 use std::process::ExitCode;
 
@@ -19,5 +23,17 @@ fn main() -> ExitCode {
         random::a_reader_that_was_forgotten_is_caught,
         random::memory_shared_by_what_lives_together_is_caught,
         random::shared_memory_holds_nothing_that_is_missed,
+        small::what_reads_overwritten_memory_has_it_written_again,
+        small::a_way_back_that_was_forgotten_is_seen,
+        small::steps_alone_make_their_readers_run,
+        small::others_resources_count_by_their_version,
+        small::a_runner_that_takes_from_another_runs_when_that_did,
+        small::what_was_left_out_runs_later,
+        small::everything_runs_if_asked_for,
+        small::counts_of_what_was_skipped_stay,
+        shipped::orbiting_runs_what_sees_the_camera,
+        shipped::a_parameter_runs_what_has_it_as_a_cause,
+        shipped::pictures_equal_those_of_full_runs,
+        shipped::shared_memory_holds_nothing_that_is_missed,
     ])
 }

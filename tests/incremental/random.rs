@@ -7,6 +7,7 @@ use meniscus::plan::changes::{Cause, Reason};
 use meniscus::plan::model::{ObjectId, Origin, Plan, Slot};
 
 use crate::generate::{Generated, grow};
+use crate::poison;
 use crate::world::{Alter, Numbers, World, objects};
 
 /// `MENISCUS_STEPS=10000` in the environment looks further.
@@ -253,4 +254,9 @@ pub fn memory_shared_by_what_lives_together_is_caught(engine: &mut Engine) {
     );
 }
 
-pub fn shared_memory_holds_nothing_that_is_missed(_: &mut Engine) {}
+pub fn shared_memory_holds_nothing_that_is_missed(engine: &mut Engine) {
+    for seed in 0..8 {
+        let driven = drive(engine, seed, TO_A_GRAPH, poison::shared, Look::Pictures);
+        driven.unwrap_or_else(|fault| panic!("{fault}"));
+    }
+}

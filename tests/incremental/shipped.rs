@@ -1,0 +1,334 @@
+//! Every shipped graph, on a small picture: what runs when the camera orbits, when a parameter is
+//! turned, and when anything changes.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
+
+use glam::DVec3;
+use meniscus::check;
+use meniscus::diagnostic::{Sources, Style, render_all};
+use meniscus::engine::{Engine, Frame, Policy, Report, Runner, StepInfo};
+use meniscus::files::DiskFiles;
+use meniscus::graph::model::ParamKind;
+use meniscus::graph::value::Value;
+use meniscus::host::params::declared;
+use meniscus::plan::instantiate_stand_in;
+use meniscus::plan::model::{Causes, InputInfo, ObjectId, Origin, Param, Plan, Request};
+use meniscus::program::{self, Program};
+use meniscus::scene::{Camera, Light};
+
+use crate::poison;
+use crate::world::{Numbers, objects, read};
+
+const VIEWPORT: [u32; 2] = [40, 30];
+/// `MENISCUS_STEPS=200` in the environment looks further.
+const STEPS: u32 = 20;
+
+struct Shipped<'e> {
+    engine: &'e mut Engine,
+    name: String,
+    program: Program,
+    sources: Sources,
+    request: Request,
+    camera: Camera,
+    time: f64,
+    steps: u32,
+    /// Turns where particles are.
+    seed: u64,
+    alter: fn(&mut Plan),
+    policy: Policy,
+    skips: Option<Runner>,
+    full: Option<Runner>,
+}
+
+/// Names of the shipped graphs, without parts.
+fn graphs() -> Vec<String> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("graphs");
+    let names = std::fs::read_dir(folder).unwrap().map(|e| e.unwrap().file_name().into_string().unwrap());
+    let mut names: Vec<String> = names.filter(|name| name.ends_with(".ron")).collect();
+    names.sort();
+    assert!(names.len() >= 2, "the shipped graphs are not where they should be");
+    names
+}
+
+impl<'e> Shipped<'e> {
+    fn new(engine: &'e mut Engine, name: &str, alter: fn(&mut Plan)) -> Self {
+        let mut sources = Sources::new();
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("graphs").join(name);
+        let loaded = program::load(&DiskFiles, &mut sources, path.to_str().unwrap(), None);
+        let program = loaded.program.unwrap_or_else(|| panic!("{name}"));
+        let mut request = check::stand_in(&program);
+        (request.features, request.limits) = (engine.gpu().features(), engine.gpu().limits());
+        request.viewport = VIEWPORT;
+        let camera = Camera::new(DVec3::new(1.2, 1.0, 1.2), DVec3::new(0.0, 0.4, 0.0), 45.0);
+        let mut shipped = Self {
+            engine,
+            name: name.to_owned(),
+            program,
+            sources,
+            request,
+            camera,
+            time: 0.0,
+            steps: 0,
+            seed: 1,
+            alter,
+            policy: Policy::Keep,
+            skips: None,
+            full: None,
+        };
+        shipped.prepare();
+        shipped.upload();
+        shipped
+    }
+
+    fn plan(&self) -> Plan {
+        instantiate_stand_in(&self.program, &self.request)
+            .unwrap_or_else(|d| panic!("{}: {}", self.name, render_all(&d, &self.sources, Style::Plain)))
+    }
+
+    fn prepare(&mut self) {
+        let plan = self.plan();
+        let mut altered = plan.clone();
+        (self.alter)(&mut altered);
+        let before = (self.skips.take(), self.full.take());
+        self.engine.policy = self.policy;
+        let prepared = self.engine.prepare(altered, before.0);
+        self.skips = Some(prepared.unwrap_or_else(|refused| panic!("{}: {:#?}", self.name, refused.diagnostics)));
+        self.engine.policy = Policy::Smallest;
+        let prepared = self.engine.prepare(plan, before.1);
+        self.full = Some(prepared.unwrap_or_else(|refused| panic!("{}: {:#?}", self.name, refused.diagnostics)));
+        self.full.as_mut().unwrap().run_all(true);
+    }
+
+    /// Particles in the bounds that the plan was told of, where they belong; the rest is zero.
+    fn upload(&mut self) {
+        for runner in [&mut self.skips, &mut self.full].into_iter().flatten() {
+            for id in 0..runner.plan().objects.len() {
+                let Some(bytes) = positions(runner.plan(), id, &self.request, self.seed) else { continue };
+                runner.upload_buffer(self.engine, id, &bytes).unwrap();
+            }
+        }
+    }
+
+    fn skips(&self) -> &Runner {
+        self.skips.as_ref().unwrap()
+    }
+
+    /// What somebody may turn: not what a `Use` gives.
+    fn params(&self) -> Vec<Param> {
+        let declared = declared(&self.program);
+        self.skips().plan().params.iter().filter(|p| declared.contains_key(&p.path)).cloned().collect()
+    }
+
+    fn run(&mut self, all: bool) -> Report {
+        let runner = if all { self.full.as_mut() } else { self.skips.as_mut() }.unwrap();
+        let (camera, viewport) = (self.camera, self.request.viewport);
+        let live = |name: &str, _: Option<&StepInfo>| live(name, &camera, viewport);
+        let steps = vec![self.steps; runner.plan().steps.len()];
+        let frame = Frame { time: self.time, delta: 1.0 / 60.0, frame: 0, steps: &steps, live: &live, only: None };
+        runner.run(self.engine, &frame).unwrap_or_else(|d| panic!("{}: {d:#?}", self.name));
+        runner.finish(self.engine).unwrap_or_else(|d| panic!("{}: {d:#?}", self.name))
+    }
+
+    /// The units that run in the next frame of the runner that skips.
+    fn ran(&mut self) -> BTreeSet<usize> {
+        let report = self.run(false);
+        (0..report.units.len()).filter(|u| report.units[*u].ran).collect()
+    }
+
+    /// The units outside of steps whose causes fit.
+    fn with(&self, fits: impl Fn(&Causes) -> bool) -> BTreeSet<usize> {
+        let plan = self.skips().plan();
+        let outside = |u: &usize| plan.units[*u].passes.iter().any(|p| plan.passes[*p].steps.is_none());
+        (0..plan.units.len()).filter(|u| outside(u) && fits(&plan.units[*u].causes)).collect()
+    }
+
+    fn orbit(&mut self, turn: f64) {
+        let turned = glam::DQuat::from_rotation_y(turn) * (self.camera.eye - self.camera.target);
+        self.camera.eye = self.camera.target + turned;
+    }
+
+    fn same(&mut self, after: &str) {
+        let (skips, full) = (self.skips.as_ref().unwrap(), self.full.as_ref().unwrap());
+        let plan = full.plan();
+        let unordered: Vec<ObjectId> = (plan.passes.iter().filter(|p| p.unordered))
+            .flat_map(|p| p.accesses.iter().filter(|a| a.write).flat_map(|a| objects(plan, a.object)))
+            .collect();
+        for output in &plan.outputs {
+            if objects(plan, output.object).iter().any(|id| unordered.contains(id)) {
+                continue;
+            }
+            let [a, b] = [skips, full].map(|runner| read(self.engine, runner, output.object));
+            let differ = a.iter().zip(&b).filter(|(a, b)| a != b).count();
+            assert!(a == b, "{}: `{}` differs in {differ} of {} bytes after {after}", self.name, output.name, a.len());
+        }
+    }
+}
+
+/// The values of cameras and lights by the names of their fields; whatever else is live stands still.
+fn live(name: &str, camera: &Camera, viewport: [u32; 2]) -> Option<Value> {
+    let field = name.split_once('.')?.1;
+    let sun = Light { direction: DVec3::new(-0.45, -0.75, -0.5), color: DVec3::ONE, intensity: 4.0 };
+    match field {
+        "direction" | "color" | "intensity" => sun.field(field),
+        "origin" => Some(Value::vec([0.0; 3])),
+        "pressed" => Some(Value::Int(0)),
+        _ => camera.field(field, viewport),
+    }
+}
+
+fn positions(plan: &Plan, id: ObjectId, request: &Request, seed: u64) -> Option<Vec<u8>> {
+    let Origin::Attribute { input, attribute, .. } = &plan.objects[id].origin else { return None };
+    let InputInfo::Particles { count, min, max, .. } = request.inputs.get(input)? else { return None };
+    if attribute != "position" {
+        return None;
+    }
+    let mut numbers = Numbers(seed);
+    let mut bytes = Vec::new();
+    for _ in 0..*count {
+        for axis in 0..3 {
+            let part = f64::from(numbers.below(1000)) / 1000.0;
+            bytes.extend(((min[axis] + part * (max[axis] - min[axis])) as f32).to_le_bytes());
+        }
+    }
+    Some(bytes)
+}
+
+/// Another value that the parameter may have.
+fn other(param: &Param, numbers: &mut Numbers) -> Option<Value> {
+    let number = |v: &Option<Value>| v.as_ref().and_then(|v| v.components().first()?.as_f64());
+    let (min, max) = (number(&param.min), number(&param.max));
+    let part = f64::from(1 + numbers.below(6)) / 8.0;
+    let between = |now: f64| match (min, max) {
+        // Not too far: loops may be long.
+        (Some(min), Some(max)) => min + (max.min(min + 12.0) - min) * part,
+        _ => now * (0.5 + part) + 0.01,
+    };
+    let value = match (&param.kind, &param.value) {
+        (ParamKind::Bool, Value::Bool(now)) => Value::Bool(!now),
+        (ParamKind::Int, Value::Int(now)) => Value::Int(between(*now as f64).round() as i64),
+        (ParamKind::Float, now) => Value::Float(between(now.as_f64()?)),
+        (ParamKind::Choice(words), Value::Word(now)) => {
+            Value::Word(words.iter().map(|w| &w.value).find(|word| *word != now)?.clone())
+        }
+        (_, Value::Vector(now)) => Value::vec(now.iter().filter_map(Value::as_f64).map(|x| x * 0.75 + 0.05)),
+        _ => return None,
+    };
+    (value != param.value).then_some(value)
+}
+
+pub fn orbiting_runs_what_sees_the_camera(engine: &mut Engine) {
+    for name in graphs() {
+        let mut shipped = Shipped::new(engine, &name, |_| ());
+        let all = shipped.skips().plan().units.len();
+        let first = shipped.ran();
+        assert_eq!(first, shipped.with(|_| true), "{name}: at first all run");
+        assert!(shipped.ran().is_empty(), "{name}: a still picture runs nothing");
+        let report = shipped.run(false);
+        assert!(report.passes.is_empty() && report.submissions == 0 && report.complete, "{name}: {report:#?}");
+        shipped.orbit(0.1);
+        let camera =
+            |causes: &Causes| causes.live.iter().any(|live| live == "camera.position" || live.contains("_from_"));
+        let expected = shipped.with(camera);
+        assert!(expected.len() < all, "{name}: something does not see the camera");
+        assert_eq!(shipped.ran(), expected, "{name}: which of {all} units run as the camera orbits");
+        shipped.run(true);
+        shipped.same("orbiting");
+        shipped.seed += 1;
+        shipped.upload();
+        let expected = shipped.with(|causes| causes.inputs.contains("particles"));
+        assert_eq!(shipped.ran(), expected, "{name}: which run as the particles move");
+    }
+}
+
+pub fn a_parameter_runs_what_has_it_as_a_cause(engine: &mut Engine) {
+    for name in graphs() {
+        let mut shipped = Shipped::new(engine, &name, |_| ());
+        let params = shipped.params();
+        shipped.run(false);
+        let mut turned = 0;
+        for param in &params {
+            let Some(value) = other(param, &mut Numbers(7)) else { continue };
+            for params in [BTreeMap::from([(param.path.clone(), value)]), BTreeMap::new()] {
+                shipped.request.params = params;
+                shipped.prepare();
+                let expected = shipped.with(|causes| causes.params.contains(&param.path));
+                let ran = shipped.ran();
+                assert_eq!(ran, expected, "{name}: which run for `{}` = {:?}", param.path, shipped.request.params);
+                assert!(shipped.ran().is_empty(), "{name}: `{}` is done with", param.path);
+            }
+            turned += 1;
+        }
+        assert!(turned * 3 >= params.len() * 2, "{name}: {turned} of {} parameters could be turned", params.len());
+    }
+}
+
+fn change(shipped: &mut Shipped<'_>, numbers: &mut Numbers) -> String {
+    shipped.steps = 0;
+    match numbers.below(8) {
+        0 => {
+            shipped.orbit(0.3);
+            "orbiting".into()
+        }
+        1 => {
+            shipped.seed += 1;
+            shipped.upload();
+            "moving particles".into()
+        }
+        2 => {
+            shipped.request.viewport = [1 + numbers.below(60), 1 + numbers.below(60)];
+            shipped.prepare();
+            format!("resizing to {:?}", shipped.request.viewport)
+        }
+        3 => {
+            shipped.prepare();
+            "preparing again".into()
+        }
+        4 => {
+            shipped.time += 0.25;
+            shipped.steps = 1 + numbers.below(2);
+            "time and steps".into()
+        }
+        5 => {
+            shipped.policy = if shipped.policy == Policy::Keep { Policy::Smallest } else { Policy::Keep };
+            shipped.prepare();
+            format!("the policy {:?}", shipped.policy)
+        }
+        _ => {
+            let params = shipped.params();
+            let Some(param) = params.get(numbers.below(params.len().max(1) as u32) as usize) else {
+                return "nothing".into();
+            };
+            let Some(value) = other(param, numbers) else { return "nothing".into() };
+            let said = format!("`{}` = {value}", param.path);
+            shipped.request.params.insert(param.path.clone(), value);
+            shipped.prepare();
+            said
+        }
+    }
+}
+
+fn drive(engine: &mut Engine, alter: fn(&mut Plan)) {
+    let steps = std::env::var("MENISCUS_STEPS").ok().and_then(|count| count.parse().ok()).unwrap_or(STEPS);
+    for name in graphs() {
+        let mut shipped = Shipped::new(engine, &name, alter);
+        let mut numbers = Numbers(0x5eed);
+        let mut done = vec!["nothing".to_owned()];
+        let (mut ran, mut declared) = (0, 0);
+        for _ in 0..steps {
+            ran += shipped.run(false).passes.len();
+            declared += shipped.run(true).passes.len();
+            shipped.same(&done.join(", "));
+            done.push(change(&mut shipped, &mut numbers));
+        }
+        println!("{name}: {ran} of {declared} passes ran in {steps} frames");
+    }
+}
+
+pub fn pictures_equal_those_of_full_runs(engine: &mut Engine) {
+    drive(engine, |_| ());
+}
+
+pub fn shared_memory_holds_nothing_that_is_missed(engine: &mut Engine) {
+    drive(engine, poison::shared);
+}
