@@ -11,6 +11,7 @@ pub mod dump;
 mod frames;
 mod inputs;
 mod live;
+mod live_values;
 mod load;
 mod meshes;
 mod models;

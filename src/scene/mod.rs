@@ -12,10 +12,12 @@ pub mod image;
 pub mod meshes;
 mod model;
 pub mod particles;
+mod pointer;
 mod read;
 pub mod sequence;
 pub mod sun;
 
 pub use camera::{Camera, Light};
 pub use model::{CubeFiles, Item, MeshEntry, ParticleSource, Playing, Scene, find};
+pub use pointer::{PointerPath, Pointing};
 pub use read::{DEFAULT_FOV_DEGREES, read};

@@ -37,9 +37,9 @@ fn a_camera_changes_no_density_and_no_caustics() {
             causes.viewport || causes.live.iter().any(|name| name.starts_with("camera."))
         };
         let of_water = |pass: &&plan::model::Pass| {
-            ["water", "above", "light", "sky"].iter().any(|part| {
-                pass.path.strip_prefix(part).is_some_and(|rest| rest.starts_with(['/', '.']))
-            })
+            ["water", "above", "light", "sky"]
+                .iter()
+                .any(|part| pass.path.strip_prefix(part).is_some_and(|rest| rest.starts_with(['/', '.'])))
         };
         let (touched, kept): (Vec<_>, Vec<_>) = plan.passes.iter().partition(with_camera);
         assert!(!touched.iter().any(of_water), "{:?}", touched.iter().find(|p| of_water(p)).map(|p| &p.path));

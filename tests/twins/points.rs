@@ -30,12 +30,7 @@ fn word(word: &str) -> Value {
     Value::Word(word.into())
 }
 
-fn surfels_of<'a>(
-    engine: &'a mut Engine,
-    positions: &[[f32; 3]],
-    params: &[(&str, Value)],
-    read: &[&str],
-) -> Done<'a> {
+fn surfels_of<'a>(engine: &'a mut Engine, positions: &[[f32; 3]], params: &[(&str, Value)], read: &[&str]) -> Done<'a> {
     let mut all = params.to_vec();
     if params.iter().all(|(name, _)| *name != "grid") {
         all.push(("grid", Value::Int(GRID as i64)));
@@ -163,7 +158,11 @@ pub fn surfels_lie_on_the_surface(engine: &mut Engine) {
             let all = surfels(&surfels_of(engine, &positions, &params, &["surfels"]));
             assert!(all.len() > 3_000, "{} surfels", all.len());
             let (off, degrees) = mean_errors(&all, &field, iso * layout.rest());
-            eprintln!("grid {grid}, iso {iso}: {} surfels, {:.2} % and {degrees:.2} degrees off", all.len(), 100.0 * off);
+            eprintln!(
+                "grid {grid}, iso {iso}: {} surfels, {:.2} % and {degrees:.2} degrees off",
+                all.len(),
+                100.0 * off
+            );
             assert!(off < 0.01, "{off} off the iso-level {iso}");
             assert!(degrees < 2.0, "{degrees} degrees off");
             assert!(all.iter().all(|s| (s.radius / (1.3 * layout.spacing) - 1.0).abs() < 1.0e-4));
