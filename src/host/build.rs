@@ -172,6 +172,13 @@ impl Session {
         }
     }
 
+    /// Whether GPU times are taken, where the device can.
+    pub fn time_passes(&mut self, on: bool) {
+        for runner in [&mut self.graph, &mut self.present].into_iter().flatten() {
+            runner.time_passes(on);
+        }
+    }
+
     /// Plans and prepares the graph again with more room; inputs stay.
     pub(super) fn grow(&mut self) -> Result<(), Diagnostics> {
         let Some(content) = self.content.take() else { return Ok(()) };
