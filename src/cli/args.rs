@@ -185,6 +185,15 @@ pub struct BenchArgs {
     pub frames: u32,
     #[arg(long, value_enum, default_value_t = BenchFormat::Table)]
     pub format: BenchFormat,
+    /// Compare with an earlier measurement, as `--format json` wrote it
+    #[arg(long, value_name = "FILE")]
+    pub compare: Option<PathBuf>,
+    /// Compare with another scene, frame by frame in turn: tells smaller differences
+    #[arg(long, value_name = "SCENE", conflicts_with = "compare")]
+    pub against: Option<PathBuf>,
+    /// Exit with 1 if the comparison says slower
+    #[arg(long)]
+    pub deny_slower: bool,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
