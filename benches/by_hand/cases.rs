@@ -19,7 +19,7 @@ const RADIUS: f32 = 0.03;
 
 pub struct Case {
     pub name: String,
-    pub is_heavy: bool,
+    pub frames: usize,
     /// Three floats to a particle.
     pub positions: Vec<u8>,
     program: Program,
@@ -52,7 +52,7 @@ pub fn chain() -> Case {
     let program = load(&files, "graphs/chain.ron");
     Case {
         name: "a chain of 200 small compute passes".into(),
-        is_heavy: false,
+        frames: 300,
         positions: Vec::new(),
         program,
         viewport: [64, 64],
@@ -70,7 +70,7 @@ pub fn shipped(graph: &str, viewport: [u32; 2]) -> Case {
     let positions = ball.chain([far]).flatten().flat_map(f32::to_le_bytes).collect();
     Case {
         name: format!("{graph} at {} x {}", viewport[0], viewport[1]),
-        is_heavy: viewport[0] > 200,
+        frames: if viewport[0] > 200 { 16 } else { 120 },
         positions,
         program: load(&DiskFiles, path.to_str().unwrap()),
         viewport,

@@ -93,7 +93,7 @@ impl Hand {
         let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::INDIRECT;
         let arguments = buffer("arguments", u64::from(plan.argument_slots.max(1)) * 32, usage);
         let mut hand = Self { steps: Vec::new(), uniforms, arguments, memory };
-        let mut modules = Modules { device, plan, made: HashMap::new() };
+        let mut modules = Modules { device, plan, made: HashMap::new(), pipelines: HashMap::new() };
         hand.steps = plan.passes.iter().map(|pass| hand.step(&mut modules, pass)).collect();
         hand
     }
@@ -468,6 +468,8 @@ struct Modules<'a> {
     device: &'a wgpu::Device,
     plan: &'a Plan,
     made: HashMap<usize, wgpu::ShaderModule>,
+    /// By module, entry and constants: equal passes have one, as anybody would write it.
+    pipelines: HashMap<(usize, String, Vec<(String, u64)>), wgpu::ComputePipeline>,
 }
 
 impl Modules<'_> {
@@ -497,6 +499,17 @@ impl Modules<'_> {
     }
 
     fn compute(&mut self, shader: &ShaderUse) -> wgpu::ComputePipeline {
+        let constants = shader.constants.iter().map(|(name, value)| (name.clone(), value.to_bits())).collect();
+        let key = (shader.module, shader.compute.clone().unwrap_or_default(), constants);
+        if let Some(pipeline) = self.pipelines.get(&key) {
+            return pipeline.clone();
+        }
+        let pipeline = self.new_compute(shader);
+        self.pipelines.insert(key, pipeline.clone());
+        pipeline
+    }
+
+    fn new_compute(&mut self, shader: &ShaderUse) -> wgpu::ComputePipeline {
         let module = self.module(shader.module);
         let constants: Vec<_> = shader.constants.iter().map(|(name, value)| (name.as_str(), *value)).collect();
         self.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {

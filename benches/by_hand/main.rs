@@ -34,7 +34,7 @@ const BOUND: f64 = 1.05;
 fn main() {
     // `cargo test --benches` only asks whether it runs.
     let is_bench = std::env::args().any(|a| a == "--bench");
-    let frames: usize = if is_bench { 300 } else { 2 };
+    let part = if is_bench { 1 } else { 100 };
     let gpu = match Gpu::open(&GpuOptions::default()) {
         Ok(gpu) => gpu,
         Err(lacking) => {
@@ -42,12 +42,11 @@ fn main() {
             return;
         }
     };
-    println!("{}, {frames} frames a side; milliseconds, the median\n", gpu.info().name);
+    println!("{}; milliseconds, the median\n", gpu.info().name);
     let mut engine = Engine::new(gpu);
     let mut is_within = true;
     for case in [cases::chain(), cases::shipped("imai2016.ron", [96, 72]), cases::shipped("imai2016.ron", [640, 480])] {
-        let frames = if case.is_heavy { frames.div_ceil(10) } else { frames };
-        let took = run(&mut engine, &case, frames);
+        let took = run(&mut engine, &case, case.frames.div_ceil(part));
         is_within &= report(&case, &took);
     }
     assert!(is_within || !is_bench, "the graph takes more than {BOUND} of the hand-written frame to encode");
@@ -60,6 +59,7 @@ fn run(engine: &mut Engine, case: &Case, frames: usize) -> [Vec<Took>; 3] {
     let mut runner = engine.prepare(plan.clone(), None).unwrap_or_else(|refused| panic!("{:?}", refused.diagnostics));
     case.upload(engine, &mut runner);
     runner.time_passes(false);
+    runner.run_all(true);
     let mut took: [Vec<Took>; 3] = Default::default();
     let warm_up = 3;
     for nth in 0..frames + warm_up {
@@ -97,7 +97,7 @@ fn run(engine: &mut Engine, case: &Case, frames: usize) -> [Vec<Took>; 3] {
 
 /// Every output, to the byte.
 fn compare(engine: &mut Engine, runner: &meniscus::engine::Runner, hand: &Hand) {
-    for output in runner.plan().outputs.clone() {
+    for (nth, output) in runner.plan().outputs.clone().into_iter().enumerate() {
         let ObjectRef::Fixed(id) = output.object else { continue };
         let (graph, by_hand) = match &runner.plan().objects[id].kind {
             ObjectKind::Texture(_) => {
@@ -109,7 +109,8 @@ fn compare(engine: &mut Engine, runner: &meniscus::engine::Runner, hand: &Hand) 
                 (read, cases::read_buffer(engine.gpu(), hand.buffer(id)))
             }
         };
-        assert!(graph.iter().any(|byte| *byte != 0), "`{}` is empty", output.name);
+        // Others may hold nothing in this view, the first is the picture.
+        assert!(nth > 0 || graph.iter().any(|byte| *byte != 0), "`{}` is empty", output.name);
         assert!(graph == by_hand, "`{}` is not what the hand-written frame makes", output.name);
     }
 }
@@ -121,7 +122,7 @@ fn median(mut values: Vec<f64>) -> f64 {
 
 /// Prints a case; whether the graph keeps to the bound.
 fn report(case: &Case, took: &[Vec<Took>; 3]) -> bool {
-    println!("{}", case.name);
+    println!("{}, {} frames a side", case.name, took[0].len());
     println!("  {:<16} {:>8} {:>8} {:>8}   encode of the graph to this, with 95 %", "", "encode", "submit", "gpu");
     let mut is_within = true;
     for (side, frames) in SIDES.iter().zip(took) {

@@ -53,7 +53,7 @@ fn writing() -> (Plan, ObjectId) {
     (plan, picture)
 }
 
-fn texture(engine: &Engine, usage: wgpu::TextureUsages) -> wgpu::Texture {
+fn texture(engine: &Engine, usage: TextureUsages) -> wgpu::Texture {
     engine.gpu().device().create_texture(&wgpu::TextureDescriptor {
         label: Some("theirs"),
         size: wgpu::Extent3d { width: 4, height: 4, depth_or_array_layers: 1 },
