@@ -463,13 +463,16 @@ fn blend(component: meniscus::graph::model::BlendComponent) -> wgpu::BlendCompon
     wgpu::BlendComponent { src_factor, dst_factor, operation: wgpu::BlendOperation::Add }
 }
 
+/// A module, an entry and its constants.
+type Key = (usize, String, Vec<(String, u64)>);
+
 /// Shader modules and pipelines, each made once.
 struct Modules<'a> {
     device: &'a wgpu::Device,
     plan: &'a Plan,
     made: HashMap<usize, wgpu::ShaderModule>,
     /// By module, entry and constants: equal passes have one, as anybody would write it.
-    pipelines: HashMap<(usize, String, Vec<(String, u64)>), wgpu::ComputePipeline>,
+    pipelines: HashMap<Key, wgpu::ComputePipeline>,
 }
 
 impl Modules<'_> {
