@@ -23,6 +23,10 @@ pub enum Action {
     /// Puts the camera into the scene file.
     SaveCamera,
     Camera(Camera),
+    /// Keeps the camera as a viewpoint of this number.
+    Keep(u8),
+    /// Goes to a kept viewpoint.
+    GoTo(u8),
     /// Looks at all of the content from where the camera stands.
     Frame,
     /// The scene's own camera.

@@ -15,8 +15,9 @@ use super::editor;
 use super::look::Look;
 use super::params::{self, groups};
 use super::state::{Findings, Reload, State, bounds, listed, short};
+use super::viewpoints;
 use super::worker::{Cause, Round, Wants, Worker};
-use crate::diagnostic::{Diagnostic, Diagnostics, Severity, Sources};
+use crate::diagnostic::{Code, Diagnostic, Diagnostics, Severity, Sources};
 use crate::engine::{Gpu, Screen, any_device_gone};
 use crate::graph::value::Value;
 use crate::host::{Built, Content, Job, Live, Session};
@@ -32,6 +33,9 @@ const RESIZE_REST: Duration = Duration::from_millis(120);
 const POLL: Duration = Duration::from_millis(2);
 /// Steps of simulations that run in one frame while time plays, and while it catches up.
 const MOST_STEPS: [u32; 2] = [4, 32];
+
+/// A frame that takes longer is told.
+const LONG_S: u64 = 10;
 
 /// What is asked of the event loop after a [`Core::tick`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -90,6 +94,8 @@ pub struct Core {
     is_part: bool,
     /// The next frame runs passes whose results are there already, too.
     run_all: bool,
+    /// That the worker is gone was told.
+    told_gone: bool,
     /// A picture that is to be written.
     shot: Option<std::path::PathBuf>,
 }
@@ -123,6 +129,7 @@ impl Core {
             serial: 0,
             is_part: false,
             run_all: false,
+            told_gone: false,
             shot: None,
         };
         if let Some(job) = job {
@@ -148,6 +155,11 @@ impl Core {
         std::mem::take(&mut self.screen_changed)
     }
 
+    /// How often something was read back for looking at it.
+    pub fn reads(&self) -> u64 {
+        self.serial
+    }
+
     /// Whether a frame is being drawn.
     pub fn is_drawing(&self) -> bool {
         self.in_flight.is_some()
@@ -159,6 +171,7 @@ impl Core {
         self.state.switched_off.clear();
         (self.state.camera, self.state.home) = (None, None);
         (self.state.look, self.state.recording, self.state.hunt) = (None, None, None);
+        self.state.viewpoints = viewpoints::load(&job.source);
         self.state.clock = super::clock::Clock::default();
         self.reopen(job);
     }
@@ -184,6 +197,11 @@ impl Core {
     /// Takes news, lets time pass and draws, if there is anything to do.
     pub fn tick(&mut self, now: Instant) -> Tick {
         let mut tick = Tick::default();
+        if self.worker.is_gone() && !std::mem::replace(&mut self.told_gone, true) {
+            let failed =
+                Diagnostic::error(Code::USAGE, "the thread that reads files has failed: changes are no longer seen");
+            tick.repaint |= self.fail(failed.hint("open the window anew, and please report what led here").into());
+        }
         while let Some(round) = self.worker.take() {
             self.take(round);
             tick.repaint = true;
@@ -327,7 +345,13 @@ impl Core {
             return self.fail(gone.into());
         }
         if !in_flight.done.load(Ordering::Acquire) {
-            return false;
+            let seconds = in_flight.since.elapsed().as_secs();
+            let is_long = seconds >= LONG_S && seconds != self.state.waited_s;
+            if is_long {
+                self.state.waited_s = seconds;
+                self.state.say(format!("the device has been drawing for {seconds} s: a shader may loop for ever"));
+            }
+            return is_long;
         }
         let drawing_ms = in_flight.since.elapsed().as_secs_f64() * 1e3;
         self.in_flight = None;
@@ -469,6 +493,20 @@ impl Core {
             Action::Edit { path, line, column } => {
                 if let Err(why) = editor::open(&path, line, column) {
                     self.state.say(why);
+                }
+            }
+            Action::Keep(slot) => {
+                let Some(camera) = self.state.camera else { return };
+                self.state.viewpoints.insert(slot, camera);
+                let kept = self.state.job.as_ref().map(|job| viewpoints::save(&job.source, &self.state.viewpoints));
+                match kept {
+                    Some(Err(why)) => self.state.say(format!("the viewpoint is kept until you close: {why}")),
+                    _ => self.state.say(format!("viewpoint {slot} was kept")),
+                }
+            }
+            Action::GoTo(slot) => {
+                if let Some(camera) = self.state.viewpoints.get(&slot) {
+                    self.state.camera = Some(*camera);
                 }
             }
             Action::RunAll(on) => {

@@ -121,11 +121,8 @@ pub fn keys(ui: &Ui, core: &Core, layout: &mut Layout, actions: &mut Vec<Action>
             if !i.key_pressed(key) {
                 continue;
             }
-            match (i.modifiers.command, layout.viewpoints.get_mut(slot)) {
-                (true, Some(place)) => *place = core.state.camera,
-                (false, Some(Some(camera))) => actions.push(Action::Camera(*camera)),
-                _ => {}
-            }
+            let slot = slot as u8 + 1;
+            actions.push(if i.modifiers.command { Action::Keep(slot) } else { Action::GoTo(slot) });
         }
         if i.modifiers.command && i.key_pressed(Key::S) {
             actions.push(Action::SaveParams);
