@@ -74,6 +74,8 @@ pub struct Core {
     sources: Sources,
     wants: Wants,
     sent: Wants,
+    /// What is opened once the size is known.
+    opening: Option<Job>,
     /// When the wanted size changed last.
     resized: Option<Instant>,
     made: Option<Made>,
@@ -116,6 +118,7 @@ impl Core {
             sources: Sources::new(),
             wants: Wants::default(),
             sent: Wants::default(),
+            opening: None,
             resized: None,
             made: None,
             stepped_s: None,
@@ -180,7 +183,11 @@ impl Core {
     fn reopen(&mut self, job: Job) {
         self.state.busy = Some(Instant::now());
         self.state.job = Some(job.clone());
-        self.worker.open(job);
+        match self.wants.viewport {
+            Some(_) => self.worker.open(job),
+            // The size is known with the first paint: nothing is planned twice.
+            None => self.opening = Some(job),
+        }
     }
 
     /// The size that the picture should have, in pixels.
@@ -191,6 +198,11 @@ impl Core {
             // The first size is not waited for.
             self.resized = self.wants.viewport.map(|_| Instant::now());
             self.wants.viewport = wanted;
+        }
+        if let Some(job) = self.opening.take() {
+            self.sent = self.wants.clone();
+            self.worker.want(self.wants.clone());
+            self.worker.open(job);
         }
     }
 

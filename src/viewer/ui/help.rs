@@ -23,7 +23,7 @@ const KEYS: &[(&str, &str)] = &[
 
 pub fn draw(ui: &mut Ui, layout: &mut Layout) {
     let mut is_open = layout.shows_help;
-    Window::new("Keys and mouse").open(&mut is_open).resizable(false).collapsible(false).show(ui.ctx(), |ui| {
+    Window::new("Keys and mouse").anchor(egui::Align2::CENTER_TOP, [0.0, 60.0]).open(&mut is_open).resizable(false).collapsible(false).show(ui.ctx(), |ui| {
         Grid::new("keys").num_columns(2).spacing([24.0, 6.0]).show(ui, |ui| {
             for (key, what) in KEYS {
                 ui.strong(*key);
