@@ -33,6 +33,11 @@ pub enum Action {
     Home,
     /// All state as at the start.
     Restart,
+    /// Points at a place in the picture, from -1 to 1 to the right and up.
+    Point {
+        at: [f64; 2],
+        is_pressed: bool,
+    },
     /// Reads everything again.
     Reload,
     Play(bool),

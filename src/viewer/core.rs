@@ -20,9 +20,9 @@ use super::worker::{Cause, Round, Wants, Worker};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics, Severity, Sources};
 use crate::engine::{Gpu, Screen, any_device_gone};
 use crate::graph::value::Value;
-use crate::host::{Built, Content, Job, Live, Session};
+use crate::host::{Built, Content, Input, Job, Live, Session};
 use crate::plan::model::Plan;
-use crate::scene::Camera;
+use crate::scene::{Camera, Pointing};
 
 pub use look::Hunt;
 pub use record::{Recording, free_name};
@@ -472,6 +472,8 @@ impl Core {
         self.version += 1;
         self.state.memory_bytes = built.memory_bytes;
         self.state.changes_over_time = self.session.changes_over_time();
+        let mut inputs = self.session.content().into_iter().flat_map(|content| content.inputs.values());
+        self.state.takes_pointer = inputs.any(|input| matches!(input, Input::Pointer(_)));
         if let Some(plan) = self.session.plan() {
             self.state.viewport = plan.viewport;
             self.state.groups = groups(plan, self.session.present_plan());
@@ -507,6 +509,7 @@ impl Core {
                     self.state.say(why);
                 }
             }
+            Action::Point { at, is_pressed } => self.point(at, is_pressed),
             Action::Keep(slot) => {
                 let Some(camera) = self.state.camera else { return };
                 self.state.viewpoints.insert(slot, camera);
@@ -554,7 +557,15 @@ impl Core {
         }
     }
 
+    /// A pointer of the graph is where a person points, from now on.
+    fn point(&mut self, at: [f64; 2], is_pressed: bool) {
+        let Some(camera) = self.state.camera else { return };
+        let direction = camera::ray(&camera, at, self.state.viewport);
+        self.session.point(Pointing { time_s: self.state.clock.time_s, origin: camera.eye, direction, is_pressed });
+    }
+
     fn restart(&mut self) {
+        self.session.forget_pointing();
         self.state.clock.seek(0.0);
         self.version += 1;
         self.stepped_s = None;

@@ -32,6 +32,8 @@ pub struct State {
     pub in_scene: BTreeMap<String, Value>,
     pub clock: Clock,
     pub changes_over_time: bool,
+    /// The graph has an input for what a person points at.
+    pub takes_pointer: bool,
     pub camera: Option<Camera>,
     /// As the scene has it, or as the content is framed.
     pub home: Option<Camera>,
