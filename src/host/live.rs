@@ -1,8 +1,9 @@
 //! Drawing for a window: a frame is submitted and nobody waits for it; times and counts come
 //! later. Steps are done as time passes, and a frame that is drawn again runs none.
 
-use super::build::{Session, is_color};
+use super::build::{Session, is_color, move_meshes};
 use super::draw::nothing;
+use super::inputs::Input;
 use super::live_values::LiveValues;
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::engine::{Frame, Report, Screen, TextureData};
@@ -52,6 +53,7 @@ impl Session {
     pub fn submit(&mut self, live: &Live<'_>) -> Result<Report, Diagnostics> {
         let (Some(content), Some(runner)) = (&mut self.content, &mut self.graph) else { return Err(nothing().into()) };
         content.camera = live.camera;
+        move_meshes(&self.engine, runner, &content.inputs, live.time_s)?;
         let values = LiveValues::new(content, &content.inputs, &self.pointed, live.time_s);
         let frame = Frame {
             time: live.time_s,
@@ -155,7 +157,9 @@ impl Session {
 
     /// Whether anything of the graph depends on time.
     pub fn changes_over_time(&self) -> bool {
-        self.plan().is_some_and(changes_over_time)
+        let mut inputs = self.content.iter().flat_map(|content| content.inputs.values());
+        let moves = inputs.any(|input| matches!(input, Input::Meshes(meshes) if meshes.info.animated));
+        moves || self.plan().is_some_and(changes_over_time)
     }
 }
 

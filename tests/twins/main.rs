@@ -27,6 +27,8 @@ fn main() -> ExitCode {
         particles::ellipsoids_of_the_dam_break,
         particles::ellipsoids_of_third_parties,
         particles::ellipsoids_of_lone_and_heaped_particles,
+        particles::strays_are_small_groups,
+        particles::strays_do_not_depend_on_the_order_of_threads,
         pool::state_does_not_depend_on_the_pictures,
         pool::a_step_is_its_twin_in_64_bits,
         pool::waves_travel_at_the_speed_of_the_equation,
