@@ -123,8 +123,8 @@ fn project() -> MemoryFiles {
 }
 
 /// After this a file gets no more than [`FEWEST`] mutations: graphs of hundreds of passes take long without optimization.
-const ENOUGH: Duration = Duration::from_secs(8);
-const FEWEST: usize = 30;
+const ENOUGH: Duration = Duration::from_secs(3);
+const FEWEST: usize = 20;
 
 /// Checks mutations of one file until the number is reached.
 fn try_mutations(files: &MemoryFiles, changed: &Path, root: &str, count: usize, random: &mut Random) {
