@@ -342,7 +342,7 @@ fn numbered_files_are_frames() {
     // Frame n has a row of n dots; there is no frame 4, and 6 is damaged.
     let row = |n: usize| format!("x,y,z\n{}", (0..n).map(|i| format!("{i},{n},0\n")).collect::<String>());
     for n in [2, 3, 5, 7] {
-        project.write(&format!("scenes/assets/row_{n:03}.csv"), &row(n));
+        project.write(&format!("scenes/assets/row_{n:03}.csv"), row(n));
     }
     project.write("scenes/assets/row_006.csv", "x,y,z\n1,2\n");
     project.edit("scenes/dots.ron", "assets/dots.csv", "assets/row_###.csv");
