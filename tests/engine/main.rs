@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 mod compute;
+mod distance;
 mod draw;
 mod embed;
 mod harness;
@@ -77,6 +78,9 @@ fn main() -> ExitCode {
         meshes::materials_are_bound_by_name,
         meshes::animations_move_nodes,
         meshes::what_does_not_fit_is_told,
+        distance::of_a_box,
+        distance::of_a_sphere,
+        distance::of_several_bodies,
         shipped::imai2016,
         shipped::imai2014,
         shipped::iwasaki2006,
