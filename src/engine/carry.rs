@@ -141,7 +141,9 @@ impl Runner {
     pub(super) fn notice(&mut self, live: &dyn Fn(&str) -> Option<crate::graph::value::Value>) {
         for at in 0..self.changes.live_count() {
             let value = self.changes.live_name(at).and_then(live);
-            self.changes.note_live(at, value);
+            if self.changes.note_live(at, value) {
+                self.uniforms.note_change();
+            }
         }
         for (object, source) in self.plan.objects.iter().zip(&self.sources) {
             if *source == Content::Unversioned

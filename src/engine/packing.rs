@@ -42,13 +42,12 @@ pub fn encode(value: &Value, ty: &Type, out: &mut [u8]) -> Result<(), String> {
 
 fn vector(parts: &[Value], components: u32, scalar: Scalar, out: &mut [u8]) -> Option<()> {
     let one = Value::Int(1);
-    let full: Vec<&Value> = match (parts.len(), components) {
-        (3, 4) => parts.iter().chain([&one]).collect(),
-        (n, c) if n == c as usize => parts.iter().collect(),
-        _ => return None,
-    };
+    let opaque = (parts.len() == 3 && components == 4).then_some(&one);
+    if opaque.is_none() && parts.len() != components as usize {
+        return None;
+    }
     let step = scalar.size() as usize;
-    full.into_iter().zip(out.chunks_mut(step)).try_for_each(|(part, place)| scalar_bytes(part, scalar, place))
+    parts.iter().chain(opaque).zip(out.chunks_mut(step)).try_for_each(|(part, place)| scalar_bytes(part, scalar, place))
 }
 
 fn matrix(parts: &[Value], columns: u32, rows: u32, scalar: Scalar, out: &mut [u8]) -> Option<()> {

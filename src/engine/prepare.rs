@@ -19,7 +19,7 @@ use super::mips;
 use super::pipeline::{Pipeline, Recipe, RecipeKind, Source, Stage};
 use super::pool::{Policy, Pool};
 use super::report::{BuildReport, Report};
-use super::run::Variants;
+use super::run::{StepInfo, Variants};
 use super::timing::Timing;
 use super::uniform::Uniforms;
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
@@ -69,6 +69,12 @@ pub struct Runner {
     pub(super) writers: Vec<(usize, usize)>,
     /// Which passes run in the frame at hand.
     pub(super) chosen: Vec<bool>,
+    /// The steps of the frame at hand.
+    pub(super) due: Vec<StepInfo>,
+    /// Each `Steps`, in the order of their passes.
+    pub(super) steps_in_order: Vec<usize>,
+    /// How far rings had turned and how many steps were done before the frame at hand.
+    pub(super) before: (Vec<usize>, Vec<u64>),
     /// Whether passes run whose results are there already.
     pub(super) runs_all: bool,
     pub(super) policy: Policy,
@@ -135,6 +141,9 @@ impl Engine {
             stamps,
             writers: carry::writers(&plan),
             chosen: Vec::with_capacity(plan.passes.len()),
+            due: Vec::new(),
+            steps_in_order: steps_in_order(&plan),
+            before: (Vec::with_capacity(rotation.len()), Vec::with_capacity(done.len())),
             runs_all: previous.is_some_and(|p| p.runs_all),
             policy: self.policy,
             pipelines,
@@ -257,6 +266,12 @@ fn check_features(gpu: &Gpu, plan: &Plan) -> Result<(), Diagnostic> {
         format!("`{}` needs {}, which this device lacks", plan.graph.display(), names.join(", ")),
     )
     .hint("`If(test: \"device(feature)\")` can choose another way for such devices"))
+}
+
+fn steps_in_order(plan: &Plan) -> Vec<usize> {
+    let mut order: Vec<usize> = (0..plan.steps.len()).collect();
+    order.sort_by_key(|s| plan.steps[*s].passes.start);
+    order
 }
 
 /// The rings that a pass touches, in order.

@@ -66,12 +66,22 @@ impl Runner {
     /// If a live name has no value, the device refuses something, or it was lost. What is on
     /// the GPU may then be of no frame, and the steps count as not done.
     pub fn run(&mut self, engine: &Engine, frame: &Frame<'_>) -> Result<Report, Diagnostics> {
-        self.carry_out(engine, frame, None)
+        self.frame_into(engine, frame, None)?;
+        Ok(self.report())
     }
 
-    /// The same into an embedder's commands, who submits them: after everything that was encoded
-    /// before, and before the next frame of this runner is encoded. The report of the frame comes
-    /// by [`Runner::poll`] once they were.
+    /// The same without a report, for those who draw all the time: where nothing new comes up, it
+    /// allocates nothing. [`Runner::poll`] has the report once the GPU answered.
+    ///
+    /// # Errors
+    /// As [`Runner::run`].
+    pub fn advance(&mut self, engine: &Engine, frame: &Frame<'_>) -> Result<(), Diagnostics> {
+        self.frame_into(engine, frame, None)
+    }
+
+    /// The same as [`Runner::run`] into an embedder's commands, who submits them: after everything
+    /// that was encoded before, and before the next frame of this runner is encoded. The report of
+    /// the frame comes by [`Runner::poll`] once they were.
     ///
     /// # Errors
     /// As [`Runner::run`]; what the device refuses of the commands is told with the next frame.
@@ -81,42 +91,56 @@ impl Runner {
         frame: &Frame<'_>,
         encoder: &mut wgpu::CommandEncoder,
     ) -> Result<Report, Diagnostics> {
-        self.carry_out(engine, frame, Some(encoder))
+        self.frame_into(engine, frame, Some(encoder))?;
+        Ok(self.report())
     }
 
-    fn carry_out(
+    fn frame_into(
         &mut self,
         engine: &Engine,
         frame: &Frame<'_>,
         into: Option<&mut wgpu::CommandEncoder>,
-    ) -> Result<Report, Diagnostics> {
+    ) -> Result<(), Diagnostics> {
         let gpu = engine.gpu();
         gpu.check()?;
         let began = Instant::now();
         self.fill_inputs(gpu)?;
         let steps = self.step_infos(frame);
+        let ran = self.carry_out(gpu, frame, &steps, (began, into));
+        self.due = steps;
+        ran
+    }
+
+    fn carry_out(
+        &mut self,
+        gpu: &Gpu,
+        frame: &Frame<'_>,
+        steps: &[StepInfo],
+        (began, into): (Instant, Option<&mut wgpu::CommandEncoder>),
+    ) -> Result<(), Diagnostics> {
         let live =
             |name: &str, step: Option<&StepInfo>| (frame.live)(name, step).or_else(|| own_value(frame, name, step));
         self.notice(&|name| live(name, None));
         let runs_any = self.changes.decide(frame.steps, self.runs_all, self.policy == Policy::Smallest);
-        self.timing.begin(gpu, &self.plan, frame.frame, runs(&self.plan, &steps));
+        self.timing.begin(gpu, &self.plan, frame.frame, runs(&self.plan, steps));
         self.timing.decided(self.changes.decision());
         if !runs_any {
             self.changes.done(&self.plan, frame.steps, frame.only);
             self.timing.uploaded(gpu.uploaded_bytes());
             self.timing.submitted(began.elapsed().as_secs_f64() * 1e3);
-            return Ok(self.report());
+            return Ok(());
         }
-        self.uniforms.write_frame(gpu, &self.plan, &live)?;
-        self.uniforms.stage_steps(gpu, &self.plan, &steps, &live)?;
-        let rotation = self.rotation.clone();
-        let done = self.done.clone();
+        self.uniforms.write_frame(gpu, &self.plan, &self.changes, &live)?;
+        self.uniforms.stage_steps(gpu, &self.plan, steps, &live)?;
+        self.before.0.clone_from(&self.rotation);
+        self.before.1.clone_from(&self.done);
         let chosen = self.choose(frame.only);
         let recorder = into.map_or_else(|| Recorder::new(gpu), Recorder::within);
-        let encoded = self.record_frame(gpu, &Frame { only: Some(&chosen), ..*frame }, &steps, recorder);
+        let encoded = self.record_frame(gpu, &Frame { only: Some(&chosen), ..*frame }, steps, recorder);
         self.chosen = chosen;
         if let Err(diagnostic) = encoded {
-            (self.rotation, self.done) = (rotation, done);
+            self.rotation.clone_from(&self.before.0);
+            self.done.clone_from(&self.before.1);
             self.changes.failed();
             return Err(diagnostic.into());
         }
@@ -126,7 +150,7 @@ impl Runner {
         match gpu.check() {
             Ok(()) => {
                 self.changes.done(&self.plan, frame.steps, frame.only);
-                Ok(self.report())
+                Ok(())
             }
             Err(refused) => {
                 self.changes.failed();
@@ -159,21 +183,21 @@ impl Runner {
     pub fn finish(&mut self, engine: &Engine) -> Result<Report, Diagnostic> {
         let gpu = engine.gpu();
         gpu.wait()?;
-        self.timing.collect(&self.plan);
+        self.timing.collect();
         if self.timing.is_idle() {
             return Ok(self.idle_report());
         }
         if !self.timing.is_captured() {
             // All buffers were on their way when the frame was submitted; now they are back.
             let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-            self.timing.capture(gpu, &self.plan, &mut encoder, &self.fixed.stats);
+            self.timing.capture(gpu, &mut encoder, &self.fixed.stats);
             gpu.queue().submit([encoder.finish()]);
             let now = self.report();
             self.timing.submitted(now.encode_ms + now.submit_ms);
             gpu.wait()?;
-            self.timing.collect(&self.plan);
+            self.timing.collect();
         }
-        let report = self.timing.take(&self.changes).or_else(|| self.last.clone());
+        let report = self.timing.take(&self.plan, &self.changes).or_else(|| self.last.clone());
         self.last.clone_from(&report);
         Ok(report.unwrap_or_else(|| self.report()))
     }
@@ -181,7 +205,7 @@ impl Runner {
     /// The report of a frame for which nothing had to run: the counts are those of the frame that
     /// made them.
     fn idle_report(&mut self) -> Report {
-        let newest = self.timing.take(&self.changes);
+        let newest = self.timing.take(&self.plan, &self.changes);
         self.last = newest.or(self.last.take());
         let counts = self.last.as_ref().map(|last| last.counts.clone()).unwrap_or_default();
         Report { counts, complete: true, ..self.report() }
@@ -190,8 +214,8 @@ impl Runner {
     /// The newest report whose times and counts have come, once each. Does not wait.
     pub fn poll(&mut self, engine: &Engine) -> Option<Report> {
         engine.gpu().poll();
-        self.timing.collect(&self.plan);
-        let report = self.timing.take(&self.changes);
+        self.timing.collect();
+        let report = self.timing.take(&self.plan, &self.changes);
         if report.is_some() {
             self.last.clone_from(&report);
         }
@@ -226,20 +250,18 @@ impl Runner {
     }
 
     /// The steps of a frame in the order in which they run.
-    fn step_infos(&self, frame: &Frame<'_>) -> Vec<StepInfo> {
-        let mut order: Vec<usize> = (0..self.plan.steps.len()).collect();
-        order.sort_by_key(|s| self.plan.steps[*s].passes.start);
-        let mut infos = Vec::new();
-        for steps in order {
-            let rate = self.plan.steps[steps].rate;
-            let times = frame.steps.get(steps).copied().unwrap_or(0);
-            infos.extend((0..u64::from(times)).map(|i| {
-                let step = self.done[steps] + i;
+    fn step_infos(&mut self, frame: &Frame<'_>) -> Vec<StepInfo> {
+        let mut infos = std::mem::take(&mut self.due);
+        infos.clear();
+        for steps in &self.steps_in_order {
+            let (rate, done) = (self.plan.steps[*steps].rate, self.done[*steps]);
+            let times = frame.steps.get(*steps).copied().unwrap_or(0);
+            infos.extend((done..done + u64::from(times)).map(|step| {
                 let (time, delta) = match rate {
                     Some(rate) => ((step + 1) as f64 / rate, 1.0 / rate),
                     None => (frame.time, frame.delta),
                 };
-                StepInfo { steps, step, time, delta }
+                StepInfo { steps: *steps, step, time, delta }
             }));
         }
         infos
@@ -271,7 +293,7 @@ impl Runner {
             }
             at = range.end.max(at + 1);
         }
-        self.timing.capture(gpu, &self.plan, recorder.encoder(), &self.fixed.stats);
+        self.timing.capture(gpu, recorder.encoder(), &self.fixed.stats);
         self.timing.handed_over(recorder.end(gpu));
         Ok(())
     }

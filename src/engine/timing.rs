@@ -44,7 +44,7 @@ struct Slot {
 }
 
 /// What has to be known of a frame to read its answer.
-#[derive(Clone, Debug, Default)]
+#[derive(Debug, Default)]
 struct Frame {
     number: u64,
     sequence: u64,
@@ -60,6 +60,28 @@ struct Frame {
     runs: Vec<u32>,
     /// Which units ran, and why.
     decision: Decision,
+}
+
+impl Frame {
+    /// Takes over another's, into memory that is there.
+    fn copy_from(&mut self, other: &Self) {
+        let Self { number, sequence, encode_ms, begun, uploaded_bytes, marks, with, runs, decision } = other;
+        (self.number, self.sequence) = (*number, *sequence);
+        (self.encode_ms, self.begun, self.uploaded_bytes) = (*encode_ms, *begun, *uploaded_bytes);
+        self.marks.clone_from(marks);
+        self.with.clone_from(with);
+        self.runs.clone_from(runs);
+        self.decision.clone_from(decision);
+    }
+}
+
+/// The newest answer, as the device gave it.
+#[derive(Debug, Default)]
+struct Answered {
+    /// Whether nobody took it yet.
+    is_new: bool,
+    frame: Frame,
+    bytes: Vec<u8>,
 }
 
 #[derive(Debug)]
@@ -82,7 +104,7 @@ pub(super) struct Timing {
     captured: Option<usize>,
     /// Bytes that had gone to the device at the frame before.
     uploaded: u64,
-    latest: Option<(u64, Report, Decision)>,
+    latest: Answered,
 }
 
 impl Timing {
@@ -102,7 +124,7 @@ impl Timing {
             now: Frame::default(),
             captured: None,
             uploaded: gpu.uploaded_bytes(),
-            latest: None,
+            latest: Answered::default(),
         };
         timing.grow(gpu, plan.passes.len() as u32);
         timing
@@ -253,10 +275,10 @@ impl Timing {
     }
 
     /// Copies times and counts to a buffer that can be read, if one is free.
-    pub fn capture(&mut self, gpu: &Gpu, plan: &Plan, encoder: &mut wgpu::CommandEncoder, stats: &wgpu::Buffer) {
+    pub fn capture(&mut self, gpu: &Gpu, encoder: &mut wgpu::CommandEncoder, stats: &wgpu::Buffer) {
         if self.slots.iter().all(|s| s.state.load(Ordering::Acquire) != FREE) {
             gpu.poll();
-            self.collect(plan);
+            self.collect();
         }
         let Some(at) = self.slots.iter().position(|s| s.state.load(Ordering::Acquire) == FREE) else { return };
         let marks = self.now.marks.len() as u64;
@@ -271,7 +293,7 @@ impl Timing {
             encoder.copy_buffer_to_buffer(stats, 0, target, u64::from(self.pairs) * 16, self.stats_bytes);
         }
         let slot = &mut self.slots[at];
-        slot.frame.clone_from(&self.now);
+        slot.frame.copy_from(&self.now);
         slot.state.store(WAITING, Ordering::Release);
         let answer = Answer(Arc::clone(&slot.state));
         encoder.map_buffer_on_submit(&slot.buffer, wgpu::MapMode::Read, .., move |mapped| answer.came(mapped.is_ok()));
@@ -302,20 +324,22 @@ impl Timing {
     pub fn submitted(&mut self, encode_ms: f64) {
         self.now.encode_ms = encode_ms;
         if let Some(at) = self.captured {
-            self.slots[at].frame.clone_from(&self.now);
+            self.slots[at].frame.copy_from(&self.now);
         }
     }
 
-    /// Reads the answers that have come.
-    pub fn collect(&mut self, plan: &Plan) {
+    /// Keeps the newest of the answers that have come.
+    pub fn collect(&mut self) {
         for slot in &self.slots {
             match slot.state.load(Ordering::Acquire) {
                 READY => {
-                    if let Ok(view) = slot.buffer.get_mapped_range(..) {
-                        let report = self.read(plan, &slot.frame, &view);
-                        if self.latest.as_ref().is_none_or(|(sequence, ..)| *sequence < slot.frame.sequence) {
-                            self.latest = Some((slot.frame.sequence, report, slot.frame.decision.clone()));
-                        }
+                    if let Ok(view) = slot.buffer.get_mapped_range(..)
+                        && self.latest.frame.sequence < slot.frame.sequence
+                    {
+                        self.latest.is_new = true;
+                        self.latest.frame.copy_from(&slot.frame);
+                        self.latest.bytes.clear();
+                        self.latest.bytes.extend_from_slice(&view);
                     }
                     slot.buffer.unmap();
                     slot.state.store(FREE, Ordering::Release);
@@ -327,9 +351,12 @@ impl Timing {
     }
 
     /// The newest complete report, once.
-    pub fn take(&mut self, changes: &Changes) -> Option<Report> {
-        let (_, mut report, decision) = self.latest.take()?;
-        report.units = units(changes, &decision);
+    pub fn take(&mut self, plan: &Plan, changes: &Changes) -> Option<Report> {
+        if !std::mem::take(&mut self.latest.is_new) {
+            return None;
+        }
+        let mut report = self.read(plan, &self.latest.frame, &self.latest.bytes);
+        report.units = units(changes, &self.latest.frame.decision);
         Some(report)
     }
 

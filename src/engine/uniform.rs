@@ -5,6 +5,7 @@
 //! everything with time in it is there that of the step. Values of several steps in one frame
 //! wait in a staging buffer, from where the frame copies them before each step.
 
+use std::borrow::Cow;
 use std::ops::Range;
 
 use super::gpu::Gpu;
@@ -12,7 +13,9 @@ use super::packing;
 use super::run::StepInfo;
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::graph::eval::eval_live;
+use crate::graph::expr::ExprKind;
 use crate::graph::value::Value;
+use crate::plan::changes::Changes;
 use crate::plan::model::{Bound, Pass, PassKind, Plan, ShaderUse, UniformMember, UniformValue};
 
 /// What gives live names (`time`, `camera.position`) their values.
@@ -36,6 +39,10 @@ pub(super) struct Uniforms {
     outside: Range<u64>,
     regions: Vec<Range<u64>>,
     bytes: Vec<u8>,
+    /// What the device has of `bytes`.
+    sent: Vec<u8>,
+    /// Whether a live value outside of steps is another than the one that was packed.
+    is_stale: bool,
     buffer: Option<wgpu::Buffer>,
     staging: Option<wgpu::Buffer>,
     staged: Vec<u8>,
@@ -72,8 +79,11 @@ impl Uniforms {
             })
         });
         let bytes = vec![0; offset as usize];
-        let mut uniforms = Self { places, outside, regions, bytes, buffer, staging: None, staged: Vec::new() };
+        let (sent, staged) = (Vec::new(), Vec::new());
+        let mut uniforms =
+            Self { places, outside, regions, bytes, sent, is_stale: true, buffer, staging: None, staged };
         uniforms.pack_known(plan)?;
+        uniforms.sent.clone_from(&uniforms.bytes);
         if let Some(buffer) = &uniforms.buffer {
             gpu.write_buffer(buffer, 0, &uniforms.bytes);
         }
@@ -104,18 +114,28 @@ impl Uniforms {
         if found.is_empty() { Ok(()) } else { Err(found) }
     }
 
-    /// Packs the live places outside `Steps` and uploads them if they changed.
+    /// Tells that a live value outside of steps is another.
+    pub fn note_change(&mut self) {
+        self.is_stale = true;
+    }
+
+    /// Packs the live places outside `Steps`, if a value is another, and uploads them if that shows.
+    /// `known` has the values that were told of names, `live` those that nobody told of.
     ///
     /// # Errors
     /// If a live name has no value or one that does not fit.
-    pub fn write_frame(&mut self, gpu: &Gpu, plan: &Plan, live: Live<'_>) -> Result<(), Diagnostics> {
-        let region = self.outside.clone();
-        let before = self.bytes[span(&region)].to_vec();
-        self.pack_live(plan, None, &|name| live(name, None))?;
+    pub fn write_frame(&mut self, gpu: &Gpu, plan: &Plan, known: &Changes, live: Live<'_>) -> Result<(), Diagnostics> {
+        if !self.is_stale && !known.is_blind() {
+            return Ok(());
+        }
+        self.pack_live(plan, None, &|name| known.live_value(name), &|name| live(name, None))?;
+        self.is_stale = false;
+        let region = span(&self.outside);
         if let Some(buffer) = &self.buffer
-            && before != self.bytes[span(&region)]
+            && self.sent[region.clone()] != self.bytes[region.clone()]
         {
-            gpu.write_buffer(buffer, region.start, &self.bytes[span(&region)]);
+            gpu.write_buffer(buffer, self.outside.start, &self.bytes[region.clone()]);
+            self.sent[region.clone()].copy_from_slice(&self.bytes[region]);
         }
         Ok(())
     }
@@ -134,7 +154,7 @@ impl Uniforms {
     ) -> Result<(), Diagnostics> {
         self.staged.clear();
         for info in steps {
-            self.pack_live(plan, Some(info.steps), &|name| live(name, Some(info)))?;
+            self.pack_live(plan, Some(info.steps), &|_| None, &|name| live(name, Some(info)))?;
             self.staged.extend_from_slice(&self.bytes[span(&self.regions[info.steps])]);
         }
         if self.staged.is_empty() {
@@ -167,17 +187,23 @@ impl Uniforms {
         }
     }
 
-    fn pack_live(
+    fn pack_live<'v>(
         &mut self,
         plan: &Plan,
         steps: Option<usize>,
+        known: &dyn Fn(&str) -> Option<&'v Value>,
         live: &dyn Fn(&str) -> Option<Value>,
     ) -> Result<(), Diagnostics> {
+        let either = |name: &str| known(name).cloned().or_else(|| live(name));
         let mut found = Diagnostics::new();
         for place in self.places.iter().filter(|p| p.live && p.steps == steps) {
             for member in &plan.uniforms[place.block].members {
                 let UniformValue::Live(expr) = &member.value else { continue };
-                let packed = match eval_live(expr, live) {
+                let told = match &expr.kind {
+                    ExprKind::Name(name) => known(name),
+                    _ => None,
+                };
+                let packed = match told.map(Cow::Borrowed).or_else(|| eval_live(expr, &either).map(Cow::Owned)) {
                     Some(value) => pack(&mut self.bytes, place, plan, member, &value),
                     None => Err(Diagnostic::error(
                         Code::MISSING_INPUT,

@@ -42,11 +42,25 @@ pub struct Changes {
 }
 
 /// What runs and why: for each unit marks and a row of causes.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Debug, Default, PartialEq, Eq)]
 pub struct Decision {
     runs: Vec<bool>,
     marks: Vec<Marks>,
     changed: Vec<u64>,
+}
+
+impl Clone for Decision {
+    fn clone(&self) -> Self {
+        Self { runs: self.runs.clone(), marks: self.marks.clone(), changed: self.changed.clone() }
+    }
+
+    /// Into memory that is there: frames are decided on all the time.
+    fn clone_from(&mut self, source: &Self) {
+        let Self { runs, marks, changed } = source;
+        self.runs.clone_from(runs);
+        self.marks.clone_from(marks);
+        self.changed.clone_from(changed);
+    }
 }
 
 #[derive(Clone, Debug, Default)]
@@ -122,7 +136,8 @@ impl Changes {
     }
 
     /// Tells the value of one of these names in the frame to come. What has none counts as changed.
-    pub fn note_live(&mut self, at: usize, value: Option<Value>) {
+    /// Tells whether it is another than before.
+    pub fn note_live(&mut self, at: usize, value: Option<Value>) -> bool {
         let (cause, last) = &mut self.live[at];
         let same = matches!((&value, &*last), (Some(a), Some(b)) if is_same(a, b));
         if !same {
@@ -130,6 +145,18 @@ impl Changes {
             let cause = *cause;
             self.note(cause);
         }
+        !same
+    }
+
+    /// The value that was told last of a name.
+    pub fn live_value(&self, name: &str) -> Option<&Value> {
+        // Causes of a kind are in the order of their names.
+        let place = |(n, _): &(usize, Option<Value>)| match &self.causes[*n] {
+            Cause::Live(live) => live.as_str().cmp(name),
+            _ => std::cmp::Ordering::Less,
+        };
+        let at = self.live.binary_search_by(place).ok()?;
+        self.live[at].1.as_ref()
     }
 
     /// Tells that an input has another content than before.
