@@ -273,6 +273,39 @@ fn transparent_pictures_have_coverage_and_exr_is_linear() {
     assert!(blue.into_iter().all(|ratio| (ratio - expected).abs() < 0.05), "the graph's own color, before any curve");
 }
 
+/// A graph with state moves on with time, and sees the scene's pointer and the command line's.
+#[test]
+fn a_new_graph_with_state_runs_and_sees_the_pointer() {
+    let project = Project::empty();
+    good(project.run(&["new", "sheet", "--state"]));
+    let files = ["graphs/sheet.ron", "scenes/sheet.ron", "shaders/sheet/show.wgsl", "shaders/sheet/step.wgsl"];
+    assert_eq!(project.files(), files);
+    good(project.run(&["check", "--deny-warnings", "graphs/sheet.ron", "scenes/sheet.ron"]));
+    good(project.run(&["check", "--deny-warnings", "--device", "core", "graphs/sheet.ron", "scenes/sheet.ron"]));
+    if !has_adapter() {
+        return;
+    }
+    let render = ["render", "scenes/sheet.ron", "--size", "80x60", "-o"];
+    let drawn = |name: &str, more: &[&str]| {
+        good(project.run(&[&render[..], &[name], more].concat()));
+        std::fs::read(project.path(name)).unwrap()
+    };
+    let one = drawn("one.png", &["--time", "1.5"]);
+    assert_eq!(drawn("again.png", &["--time", "1.5"]), one);
+    assert_ne!(drawn("later.png", &["--time", "1.6"]), one);
+    assert_ne!(drawn("held.png", &["--time", "1.5", "--pointer", "0.2,0,-0.3"]), one);
+    assert_eq!(drawn("anew.png", &["--time", "1.5", "--set", "restart=1"]), one, "headless always starts anew");
+    project.edit("scenes/sheet.ron", "(time: 1.0, at: (-0.6", "(time: 1.0, at: (-0.5");
+    assert_ne!(drawn("moved.png", &["--time", "1.5"]), one);
+    project.edit("scenes/sheet.ron", "(time: 2.0", "(time: 1.0");
+    refused(
+        &project,
+        &["check", "scenes/sheet.ron"],
+        1,
+        &["the times of a pointer's keys must rise", "scenes/sheet.ron:"],
+    );
+}
+
 #[test]
 fn sequences_are_numbered_and_dumps_hold_what_was_asked_for() {
     if !has_adapter() {

@@ -65,6 +65,9 @@ pub struct SceneArgs {
     /// The camera's vertical field of view, in degrees
     #[arg(long, value_name = "DEGREES", value_parser = fov, allow_negative_numbers = true)]
     pub fov: Option<f64>,
+    /// A place in metres that the pointer holds pressed, seen from the camera
+    #[arg(long, value_name = "X,Y,Z", value_parser = triple, allow_hyphen_values = true)]
+    pub pointer: Option<[f64; 3]>,
     /// The graphics interface to use
     #[arg(long, value_name = "NAME", value_parser = ["vulkan", "metal", "dx12", "gl"])]
     pub backend: Option<String>,
@@ -209,6 +212,9 @@ pub struct NewArgs {
     /// A short name: small letters, digits and underscores
     #[arg(value_name = "NAME", value_parser = new_name)]
     pub name: String,
+    /// One whose passes happen over time: steps with state, stirred by the pointer
+    #[arg(long)]
+    pub state: bool,
 }
 
 /// Frames A to B, both included.

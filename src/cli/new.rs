@@ -12,15 +12,20 @@ use crate::diagnostic::{Code, Diagnostic, Diagnostics, Sources};
 const GRAPH: &str = include_str!("new/graph.ron");
 const SHADER: &str = include_str!("new/discs.wgsl");
 const SCENE: &str = include_str!("new/scene.ron");
+const STATE_GRAPH: &str = include_str!("new/state/graph.ron");
+const STATE_STEP: &str = include_str!("new/state/step.wgsl");
+const STATE_SHOW: &str = include_str!("new/state/show.wgsl");
+const STATE_SCENE: &str = include_str!("new/state/scene.ron");
 
 pub fn run(args: &NewArgs) -> Exit {
-    let files = files(&args.name);
+    let files = if args.state { stateful(&args.name) } else { files(&args.name) };
     match write(&files) {
         Ok(()) => {
             for (path, _) in &files {
                 say(&format!("made {}", path.display()));
             }
-            say(&format!("see it with `meniscus render scenes/{0}.ron -o {0}.png`", args.name));
+            let moment = if args.state { " --frame 120" } else { "" };
+            say(&format!("see it with `meniscus render scenes/{0}.ron -o {0}.png{moment}`", args.name));
             Exit::Done
         }
         Err(found) => report(&found, &Sources::new()),
@@ -34,6 +39,17 @@ fn files(name: &str) -> Vec<(PathBuf, String)> {
         (format!("shaders/{name}/discs.wgsl").into(), fill(SHADER)),
         (format!("scenes/{name}.ron").into(), fill(SCENE)),
         (format!("scenes/assets/{name}.csv").into(), particles()),
+    ]
+}
+
+/// The same with state that steps change.
+fn stateful(name: &str) -> Vec<(PathBuf, String)> {
+    let fill = |text: &str| text.replace("NAME", name);
+    vec![
+        (format!("graphs/{name}.ron").into(), fill(STATE_GRAPH)),
+        (format!("shaders/{name}/step.wgsl").into(), fill(STATE_STEP)),
+        (format!("shaders/{name}/show.wgsl").into(), fill(STATE_SHOW)),
+        (format!("scenes/{name}.ron").into(), fill(STATE_SCENE)),
     ]
 }
 

@@ -20,6 +20,7 @@ pub fn job(args: &SceneArgs) -> Job {
         eye: args.eye,
         target: args.target,
         fov_degrees: args.fov,
+        pointer: args.pointer,
         transparent: false,
         roots: Vec::new(),
     }

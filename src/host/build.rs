@@ -15,8 +15,8 @@ use crate::graph::value::Value;
 use crate::plan;
 use crate::plan::meshes::MeshBuffer;
 use crate::plan::model::{Buffer, Object, ObjectId, ObjectKind, ObjectRef, Origin, Plan, Texture};
-use crate::scene::convert;
 use crate::scene::meshes::{Filter, Sampler, Wrap};
+use crate::scene::{PointerPath, Pointing, convert};
 use crate::shader::reflect::Type;
 
 /// A device, and what is built on it.
@@ -28,6 +28,8 @@ pub struct Session {
     pub(super) content: Option<Content>,
     /// Room that counted buffers turned out to need, by instance path.
     pub(super) capacities: BTreeMap<String, u64>,
+    /// What was pointed at while pictures were shown.
+    pub(super) pointed: PointerPath,
 }
 
 /// Plans content, and compiles what its plans need, beside a session and on any thread.
@@ -63,7 +65,14 @@ pub struct Built {
 
 impl Session {
     pub fn new(gpu: Gpu) -> Self {
-        Self { engine: Engine::new(gpu), graph: None, present: None, content: None, capacities: BTreeMap::new() }
+        Self {
+            engine: Engine::new(gpu),
+            graph: None,
+            present: None,
+            content: None,
+            capacities: BTreeMap::new(),
+            pointed: PointerPath::default(),
+        }
     }
 
     pub fn gpu(&self) -> &Gpu {
@@ -82,6 +91,19 @@ impl Session {
 
     pub fn content(&self) -> Option<&Content> {
         self.content.as_ref()
+    }
+
+    /// Records what somebody points at from a time on: steps see it at their own times, also when they
+    /// are done again. From then on it is in place of the scene's pointers.
+    pub fn point(&mut self, at: Pointing) {
+        if at.fault().is_none() {
+            self.pointed.record(at);
+        }
+    }
+
+    /// Forgets what was recorded: the scene's pointers count again.
+    pub fn forget_pointing(&mut self) {
+        self.pointed = PointerPath::default();
     }
 
     /// Builds content beside what is there, and swaps it in if all of it works.

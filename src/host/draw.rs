@@ -1,15 +1,12 @@
 //! Drawing a moment: steps from the start, one picture, more room where counts ask for it.
 
-use std::collections::BTreeMap;
 use std::time::Instant;
 
 use super::build::{Session, is_color, move_meshes};
-use super::inputs::Input;
-use super::load::Content;
+use super::live_values::LiveValues;
 use super::picture::{self, PictureKind, Texels};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::engine::{Frame, Report, Runner, TextureData};
-use crate::graph::value::Value;
 use crate::plan::model::{ObjectKind, ObjectRef, Plan};
 
 /// Frames a second, where nobody says.
@@ -81,7 +78,6 @@ impl Session {
 
     fn run_graph(&mut self, moment: Moment) -> Result<(), Diagnostics> {
         let (Some(content), Some(runner)) = (&self.content, &mut self.graph) else { return Err(nothing().into()) };
-        let live = live_values(content, &content.inputs);
         if !runner.plan().steps.is_empty() {
             runner.reset_state(&self.engine)?;
         }
@@ -92,12 +88,13 @@ impl Session {
             let now = if frame == moment.frame { moment } else { Moment::at_frame(frame) };
             let steps = steps_until(runner.plan(), runner.steps_done(), now, first)?;
             move_meshes(&self.engine, runner, &content.inputs, now.time_s)?;
+            let live = LiveValues::new(content, &content.inputs, &self.pointed, now.time_s);
             let frame = Frame {
                 time: now.time_s,
                 delta: 1.0 / FRAMES_PER_SECOND,
                 frame: now.frame,
                 steps: &steps,
-                live: &|name, _| live.get(name).cloned(),
+                live: &|name, step| live.at(name, step),
                 only: None,
             };
             runner.run(&self.engine, &frame)?;
@@ -109,7 +106,7 @@ impl Session {
         let (Some(content), Some(graph), Some(present)) = (&self.content, &self.graph, &mut self.present) else {
             return Err(nothing().into());
         };
-        let live = live_values(content, &content.present_inputs);
+        let live = LiveValues::new(content, &content.present_inputs, &self.pointed, moment.time_s);
         let input = present.plan().objects.iter().position(is_color);
         if let (Some(input), Some(output)) = (input, graph.plan().outputs.first()) {
             present.share(input, graph, output.object)?;
@@ -119,7 +116,7 @@ impl Session {
             delta: 1.0 / FRAMES_PER_SECOND,
             frame: moment.frame,
             steps: &[],
-            live: &|name, _| live.get(name).cloned(),
+            live: &|name, step| live.at(name, step),
             only: None,
         };
         present.run(&self.engine, &frame).map(|_| ())
@@ -233,19 +230,6 @@ pub(super) fn nothing() -> Diagnostic {
 
 fn finish(runner: &mut Option<Runner>, engine: &crate::engine::Engine) -> Result<Report, Diagnostic> {
     runner.as_mut().ok_or_else(nothing)?.finish(engine)
-}
-
-/// The value of every field of every live input, as `input.field`.
-pub(super) fn live_values(content: &Content, inputs: &BTreeMap<String, Input>) -> BTreeMap<String, Value> {
-    let mut values = BTreeMap::new();
-    for (name, input) in inputs {
-        for field in input.fields() {
-            if let Some(value) = input.field(field, &content.camera, content.viewport) {
-                values.insert(format!("{name}.{field}"), value);
-            }
-        }
-    }
-    values
 }
 
 /// How many steps each `Steps` runs in a frame: at a rate, those that the time asks for and that

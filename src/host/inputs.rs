@@ -16,14 +16,14 @@ use crate::graph::value::Value;
 use crate::plan::fields::{self, FieldType};
 use crate::plan::model::{InputInfo, Texture};
 use crate::scene::image::Image;
-use crate::scene::{Light, Scene, find};
+use crate::scene::{Light, PointerPath, Scene, find};
 
 /// What feeds an input.
 #[derive(Clone, Debug)]
 pub enum Input {
     Camera,
     Light(Light),
-    Pointer,
+    Pointer(PointerPath),
     Particles(Arc<Particles>),
     Image(Arc<Image>),
     Meshes(Arc<Meshes>),
@@ -145,7 +145,10 @@ fn offered(declared: &Declared, scene: &Scene, decoded: &Decoded) -> Option<Inpu
     let name = &declared.name.value;
     match &declared.kind {
         InputKind::Camera => Some(Input::Camera),
-        InputKind::Pointer => Some(Input::Pointer),
+        InputKind::Pointer => {
+            let path = find(&scene.pointers, name).map(|item| item.value.clone());
+            Some(Input::Pointer(path.unwrap_or_default()))
+        }
         InputKind::Light => find(&scene.lights, name).map(|item| Input::Light(item.value)),
         InputKind::Particles { .. } => decoded.particles.get(name).cloned().map(Input::Particles),
         InputKind::Texture { .. } => decoded.images.get(name).cloned().map(Input::Image),
@@ -215,7 +218,7 @@ impl Input {
         match self {
             Input::Camera => InputInfo::Camera,
             Input::Light(_) => InputInfo::Light,
-            Input::Pointer => InputInfo::Pointer,
+            Input::Pointer(_) => InputInfo::Pointer,
             Input::Meshes(meshes) => InputInfo::Meshes(meshes.info.clone()),
             Input::Table(rows) => InputInfo::Table { rows: rows.clone() },
             Input::Image(image) => InputInfo::Texture(Texture {
@@ -243,24 +246,17 @@ impl Input {
         let table: &[(&'static str, FieldType)] = match self {
             Input::Camera => fields::CAMERA,
             Input::Light(_) => fields::LIGHT,
-            Input::Pointer => fields::POINTER,
+            Input::Pointer(_) => fields::POINTER,
             _ => &[],
         };
         table.iter().map(|(name, _)| *name)
     }
 
-    /// The live value of a field, for the inputs that have any.
+    /// The live value of a field that is the same for all of a frame.
     pub fn field(&self, field: &str, camera: &crate::scene::Camera, viewport: [u32; 2]) -> Option<Value> {
         match self {
             Input::Camera => camera.field(field, viewport),
             Input::Light(light) => light.field(field),
-            Input::Pointer => match field {
-                // Nobody points while pictures are made without a window.
-                "origin" => Some(Value::vec([0.0; 3])),
-                "direction" => Some(Value::vec([0.0, -1.0, 0.0])),
-                "pressed" => Some(Value::Int(0)),
-                _ => None,
-            },
             _ => None,
         }
     }

@@ -2,7 +2,8 @@
 //! later. Steps are done as time passes, and a frame that is drawn again runs none.
 
 use super::build::{Session, is_color};
-use super::draw::{live_values, nothing};
+use super::draw::nothing;
+use super::live_values::LiveValues;
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::engine::{Frame, Report, Screen, TextureData};
 use crate::plan::model::{ObjectRef, Plan};
@@ -51,13 +52,13 @@ impl Session {
     pub fn submit(&mut self, live: &Live<'_>) -> Result<Report, Diagnostics> {
         let (Some(content), Some(runner)) = (&mut self.content, &mut self.graph) else { return Err(nothing().into()) };
         content.camera = live.camera;
-        let values = live_values(content, &content.inputs);
+        let values = LiveValues::new(content, &content.inputs, &self.pointed, live.time_s);
         let frame = Frame {
             time: live.time_s,
             delta: live.delta_s,
             frame: live.frame,
             steps: live.steps,
-            live: &|name, _| values.get(name).cloned(),
+            live: &|name, step| values.at(name, step),
             only: live.only,
         };
         runner.run(&self.engine, &frame)
@@ -73,7 +74,7 @@ impl Session {
             return Err(nothing().into());
         };
         content.camera = live.camera;
-        let values = live_values(content, &content.present_inputs);
+        let values = LiveValues::new(content, &content.present_inputs, &self.pointed, live.time_s);
         let input = present.plan().objects.iter().position(is_color);
         if let (Some(input), Some(output)) = (input, graph.plan().outputs.first()) {
             present.share(input, graph, output.object)?;
@@ -83,7 +84,7 @@ impl Session {
             delta: live.delta_s,
             frame: live.frame,
             steps: &[],
-            live: &|name, _| values.get(name).cloned(),
+            live: &|name, step| values.at(name, step),
             only: None,
         };
         present.run(&self.engine, &frame)?;

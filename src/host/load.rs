@@ -17,7 +17,7 @@ use crate::files::{self, Files, Kind};
 use crate::graph::value::Value;
 use crate::plan::model::{InputInfo, Request, Texture};
 use crate::program::{self, Program, missing_file};
-use crate::scene::{self, Camera, Item, Scene, framing};
+use crate::scene::{self, Camera, Item, PointerPath, Scene, framing};
 
 /// The graph that turns light into a picture.
 const PRESENT: &str = "parts/present.ron";
@@ -44,6 +44,8 @@ pub struct Job {
     pub target: Option<[f64; 3]>,
     /// Vertical.
     pub fov_degrees: Option<f64>,
+    /// A place that the pointer holds pressed, seen from the camera, in place of the scene's pointers.
+    pub pointer: Option<[f64; 3]>,
     /// Coverage stays as alpha, without a backdrop.
     pub transparent: bool,
     /// Instance paths that are wanted besides the picture.
@@ -110,10 +112,15 @@ impl Loader<'_> {
         let root = program.as_ref().map(|p| &*p.root);
         let decoded = offer.decode(root, self.cache, &mut self.diagnostics);
         let (program, present) = (program?, present?);
-        let inputs = inputs::connect(&program.root, &scene, &decoded, &mut self.diagnostics);
+        let mut inputs = inputs::connect(&program.root, &scene, &decoded, &mut self.diagnostics);
         let (own, shared) = self.params(&scene, &program, &present);
         let viewport = self.job.size.or(scene.size).unwrap_or(DEFAULT_SIZE);
         let camera = self.camera(&scene, &inputs, viewport)?;
+        if let Some(at) = self.job.pointer {
+            let held = PointerPath::held(camera.eye, DVec3::from_array(at) - camera.eye);
+            let pointers = inputs.values_mut().filter(|input| matches!(input, Input::Pointer(_)));
+            pointers.for_each(|input| *input = Input::Pointer(held.clone()));
+        }
         let present_inputs = self.present_inputs(&present, &scene, &decoded);
         if !scene.path.starts_with(files::LIBRARY) {
             inputs::unused(&scene, &[&program.root, &present.root], &mut self.diagnostics);

@@ -10,6 +10,7 @@ mod draw;
 pub mod dump;
 mod inputs;
 mod live;
+mod live_values;
 mod load;
 mod meshes;
 mod models;

@@ -11,8 +11,10 @@ pub mod image;
 pub mod meshes;
 mod model;
 pub mod particles;
+mod pointer;
 mod read;
 
 pub use camera::{Camera, Light};
 pub use model::{Item, MeshEntry, ParticleSource, Playing, Scene, find};
+pub use pointer::{PointerPath, Pointing};
 pub use read::{DEFAULT_FOV_DEGREES, read};

@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use glam::DMat4;
 
 use super::camera::{Camera, Light};
+use super::pointer::PointerPath;
 use crate::diagnostic::{FileId, Span};
 use crate::graph::value::Value;
 use crate::syntax::Sp;
@@ -23,6 +24,7 @@ pub struct Scene {
     /// Absent: the particles are framed.
     pub camera: Option<Sp<Camera>>,
     pub lights: Vec<Item<Light>>,
+    pub pointers: Vec<Item<PointerPath>>,
     pub particles: Vec<Item<ParticleSource>>,
     /// Bodies by the names of the inputs that they feed.
     pub meshes: Vec<Item<Vec<MeshEntry>>>,
@@ -105,6 +107,7 @@ impl Scene {
         let textures = self.textures.iter().map(|item| ("texture", &item.name));
         let tables = self.tables.iter().map(|item| ("table", &item.name));
         let meshes = self.meshes.iter().map(|item| ("meshes", &item.name));
-        lights.chain(particles).chain(meshes).chain(textures).chain(tables).collect()
+        let pointers = self.pointers.iter().map(|item| ("pointer", &item.name));
+        lights.chain(pointers).chain(particles).chain(meshes).chain(textures).chain(tables).collect()
     }
 }

@@ -9,6 +9,7 @@ use glam::DVec3;
 
 use super::camera::{Camera, Light};
 use super::model::{Item, ParticleSource, Scene};
+use super::pointer::{PointerPath, Pointing};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics, Sources, Span};
 use crate::graph::value::Value;
 use crate::syntax::{self, Body, Decoder, Fields, Kind, Node, Sp, Tagged};
@@ -18,6 +19,7 @@ const FIELDS: &[&str] = &[
     "graph",
     "camera",
     "lights",
+    "pointers",
     "environment",
     "particles",
     "meshes",
@@ -31,6 +33,8 @@ const FIELDS: &[&str] = &[
 /// Vertical, in degrees, where a scene's camera does not say.
 pub const DEFAULT_FOV_DEGREES: f64 = 40.0;
 const LARGEST_SIDE: i64 = 32_768;
+/// How far above what it points at a pointer is, where nobody says.
+const POINTER_HEIGHT_M: f64 = 10.0;
 
 /// Reads the bytes of a scene file and registers them under `path`. `None` if nothing of it could
 /// be made out; with errors the scene holds what was sound.
@@ -54,6 +58,7 @@ pub fn read(path: &Path, bytes: &[u8], sources: &mut Sources, diagnostics: &mut 
         graph: fields.get("graph").and_then(|n| reader.file_name(n, "`graph`")),
         camera: fields.get("camera").and_then(|n| reader.camera(n)),
         lights: reader.items(&fields, "lights", Reader::light),
+        pointers: reader.items(&fields, "pointers", Reader::pointer),
         particles: reader.items(&fields, "particles", Reader::particles),
         meshes: reader.items(&fields, "meshes", Reader::bodies),
         textures: reader.textures(&fields),
@@ -152,6 +157,37 @@ impl Reader<'_> {
             Light { direction: DVec3::from_array(direction?), color: DVec3::from_array(color?), intensity: intensity? };
         self.sound(light.fault(), fields.head)?;
         Some(light)
+    }
+
+    /// Keys `(time: 0.5, at: (x, y, z))`, with `from` and `pressed`: the ray goes through `at`.
+    fn pointer(&mut self, node: &Node, what: &str) -> Option<PointerPath> {
+        let nodes = self.decoder.list(node, what)?;
+        let keys: Vec<_> = nodes.iter().map(|key| self.pointing(key)).collect();
+        let keys = keys.into_iter().collect::<Option<Vec<Pointing>>>()?;
+        if let Some(early) = (1..keys.len()).find(|i| keys[*i].time_s <= keys[i - 1].time_s) {
+            self.sound(Some("the times of a pointer's keys must rise"), nodes[early].span)?;
+        }
+        Some(PointerPath::authored(keys))
+    }
+
+    fn pointing(&mut self, node: &Node) -> Option<Pointing> {
+        let fields = self.decoder.fields(node, "a key of a pointer", &["time", "at", "from", "pressed"])?;
+        let time_s = fields.require(&mut self.decoder, "time").and_then(|n| self.decoder.float(n, "`time`"));
+        let at = fields.require(&mut self.decoder, "at").and_then(|n| self.decoder.floats::<3>(n, "`at`"));
+        let at = at.map(DVec3::from_array);
+        let origin = match fields.get("from") {
+            Some(n) => self.decoder.floats::<3>(n, "`from`").map(DVec3::from_array),
+            // Straight down.
+            None => at.map(|at| at + POINTER_HEIGHT_M * DVec3::Y),
+        };
+        let is_pressed = match fields.get("pressed") {
+            Some(n) => self.decoder.bool(n, "`pressed`")?,
+            None => true,
+        };
+        let (origin, at) = (origin?, at?);
+        let key = Pointing { time_s: time_s?, origin, direction: at - origin, is_pressed };
+        self.sound(key.fault(), node.span)?;
+        Some(key)
     }
 
     /// `"file"` or `(file: "file", radius: 0.025)`.

@@ -7,6 +7,7 @@ mod grid;
 #[path = "../engine/harness.rs"]
 mod harness;
 mod particles;
+mod pool;
 mod shapes;
 mod surfaces;
 
@@ -22,6 +23,11 @@ fn main() -> ExitCode {
         particles::ellipsoids_of_the_dam_break,
         particles::ellipsoids_of_third_parties,
         particles::ellipsoids_of_lone_and_heaped_particles,
+        pool::state_does_not_depend_on_the_pictures,
+        pool::a_step_is_its_twin_in_64_bits,
+        pool::waves_travel_at_the_speed_of_the_equation,
+        pool::energy_does_not_grow,
+        pool::the_measure_of_energy_sees_one_that_grows,
         surfaces::a_splash_is_a_glass_ball,
         surfaces::tilted_planes_stay_planes,
         surfaces::noise_falls_more_than_by_the_bilateral_filter,
