@@ -117,11 +117,14 @@ fn ggx(normal: vec3f, to_eye: vec3f, to_light: vec3f, alpha: f32, f0: vec3f) -> 
     return fresnel * distribution * visibility;
 }
 
-/// How much of the prefiltered sky is mirrored: an empirical fit of the integral (Karis 2014, for mobile devices).
+/// How much of the prefiltered sky is mirrored: an empirical fit of the integral (Karis 2014, for mobile devices), and
+/// what rough surfaces send on after bouncing between their facets, which the fit leaves out (Lagarde and Golubev 2018).
 fn sky_mirrored(f0: vec3f, roughness: f32, nv: f32) -> vec3f {
     let r = roughness * vec4f(-1.0, -0.0275, -0.572, 0.022) + vec4f(1.0, 0.0425, 1.04, -0.04);
     let a = min(r.x * r.x, exp2(-9.28 * nv)) * r.x + r.y;
-    return f0 * (-1.04 * a + r.z) + 1.04 * a + r.w;
+    let scale = -1.04 * a + r.z;
+    let bias = 1.04 * a + r.w;
+    return clamp((f0 * scale + bias) * (1.0 + f0 * (1.0 / max(scale + bias, 0.05) - 1.0)), vec3f(0.0), vec3f(1.0));
 }
 
 @fragment
@@ -158,7 +161,7 @@ fn shade(in: Vertex, @builtin(front_facing) is_front: bool) -> @location(0) vec4
     let mirrored = textureSampleLevel(specular_specular, linear_clamp, reflect(-to_eye, normal),
         roughness * f32(params.specular_levels - 1u)).rgb;
     // What is mirrored at the surface is not scattered below it.
-    let share = clamp(sky_mirrored(f0, roughness, nv), vec3f(0.0), vec3f(1.0));
+    let share = sky_mirrored(f0, roughness, nv);
     let from_sky = (1.0 - share) * albedo / PI * sky_irradiance(normal) + share * mirrored;
     let geometric = normalize(in.normal) * select(-1.0, 1.0, is_front);
     let sun_here = from_sun(in.world, normal) * select(0.0, 1.0, dot(geometric, -sun.direction) > 0.0);

@@ -1,7 +1,7 @@
 //! Drawing for a window: a frame is submitted and nobody waits for it; times and counts come
 //! later. Steps are done as time passes, and a frame that is drawn again runs none.
 
-use super::build::{Session, is_color};
+use super::build::{Session, is_color, move_meshes};
 use super::draw::nothing;
 use super::live_values::LiveValues;
 use crate::diagnostic::{Diagnostic, Diagnostics};
@@ -52,6 +52,7 @@ impl Session {
     pub fn submit(&mut self, live: &Live<'_>) -> Result<Report, Diagnostics> {
         let (Some(content), Some(runner)) = (&mut self.content, &mut self.graph) else { return Err(nothing().into()) };
         content.camera = live.camera;
+        move_meshes(&self.engine, runner, &content.inputs, live.time_s, &mut self.moved_s)?;
         let values = LiveValues::new(content, &content.inputs, &self.pointed, live.time_s);
         let frame = Frame {
             time: live.time_s,

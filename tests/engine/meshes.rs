@@ -279,9 +279,12 @@ pub fn an_even_sky_makes_white_things_as_bright_as_it(_: &mut Engine) {
     );
     for (sky, radiance) in [(255, 1.0), (188, 0.5)] {
         let found = lit(&bodies, sky, ((0.0, -1.0, 0.0), 0.0), &[[-1.0, 0.0], [1.0, 0.0], [0.0, 1.0], [0.0, -1.0]]);
-        for (what, color, low) in
-            [("plastic", found[0], 0.985), ("a mirror", found[1], 0.95), ("metal", found[2], 0.75), ("slanted", found[3], 0.985)]
-        {
+        for (what, color, low) in [
+            ("plastic", found[0], 0.985),
+            ("a mirror", found[1], 0.95),
+            ("metal", found[2], 0.95),
+            ("slanted", found[3], 0.985),
+        ] {
             for channel in &color[..3] {
                 let part = channel / radiance;
                 assert!((low..1.015).contains(&part), "{what} shows {part} of a sky of {radiance}");
@@ -297,14 +300,14 @@ pub fn meshes_cast_shadows_on_meshes(_: &mut Engine) {
     let bodies = format!(
         r#"(file: "plastic.gltf", scale: (3, 3, 1), {flat}), (file: "plastic.gltf", position: (0, 0.5, 0), scale: 0.8, {flat})"#
     );
-    let points = [[0.0, 0.0], [-0.9, 0.0], [0.65, 0.0], [0.65, 0.7]];
+    let points = [[0.0, 0.0], [-0.65, 0.0], [0.65, 0.0], [0.65, 0.7]];
     let found = lit(&bodies, 0, ((1.0, -1.0, 0.0), 3.0), &points);
     // Lambert: 3 cos 45° / pi, less what is mirrored, and a little of GGX.
     let is_lit = |color: &[f32; 4]| (0.6..0.75).contains(&color[0]);
     assert!(is_lit(&found[0]) && is_lit(&found[1]) && is_lit(&found[3]), "{found:?}");
     assert!(found[2][0] < 0.01, "in the shadow: {found:?}");
     let above = lit(&bodies, 0, ((-1.0, -1.0, 0.0), 3.0), &points);
-    assert!(is_lit(&above[2]) && above[1][0] > 0.6, "the shadow lies on the other side now: {above:?}");
+    assert!(is_lit(&above[2]) && above[1][0] < 0.01, "the shadow lies on the other side now: {above:?}");
 }
 
 pub fn what_does_not_fit_is_told(_: &mut Engine) {
