@@ -15,6 +15,11 @@ pub trait Files {
 
     /// Whether a file is there.
     fn exists(&self, path: &Path) -> bool;
+
+    /// The names in a folder, in any order; none where a store cannot tell.
+    fn names(&self, _folder: &Path) -> Vec<String> {
+        Vec::new()
+    }
 }
 
 /// Files of the operating system.
@@ -40,6 +45,12 @@ impl Files for DiskFiles {
     fn exists(&self, path: &Path) -> bool {
         path.is_file()
     }
+
+    fn names(&self, folder: &Path) -> Vec<String> {
+        let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+        let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
+        entries.filter_map(|entry| entry.file_name().into_string().ok()).collect()
+    }
 }
 
 /// Files in memory, for tests and for embedding.
@@ -61,6 +72,11 @@ impl Files for MemoryFiles {
 
     fn exists(&self, path: &Path) -> bool {
         self.0.contains_key(path)
+    }
+
+    fn names(&self, folder: &Path) -> Vec<String> {
+        let inside = self.0.keys().filter(|path| path.parent() == Some(folder));
+        inside.filter_map(|path| Some(path.file_name()?.to_str()?.to_owned())).collect()
     }
 }
 
@@ -108,17 +124,7 @@ pub struct NotFound {
 /// # Errors
 /// If nothing is found or the first one found cannot be read.
 pub fn find(files: &dyn Files, kind: Kind, name: &str, beside: Option<&Path>) -> Result<Found, NotFound> {
-    let mut candidates = Vec::new();
-    let base = beside.and_then(Path::parent).unwrap_or(Path::new(""));
-    candidates.push(normalize(&base.join(name)));
-    if Path::new(name).is_relative() {
-        for folder in base.ancestors() {
-            let candidate = normalize(&folder.join(kind.folder()).join(name));
-            if !candidates.contains(&candidate) && !folder.starts_with(LIBRARY) {
-                candidates.push(candidate);
-            }
-        }
-    }
+    let candidates = candidates(kind, Path::new(name), beside);
     for path in &candidates {
         if path.starts_with(LIBRARY) {
             continue;
@@ -140,6 +146,21 @@ pub fn find(files: &dyn Files, kind: Kind, name: &str, beside: Option<&Path>) ->
         Some((path, bytes)) => Ok(Found { path: Path::new(LIBRARY).join(path), bytes: bytes.into() }),
         None => Err(NotFound { tried: candidates, error: None }),
     }
+}
+
+/// The paths, in order, at which a file or folder of this name is looked for.
+pub fn candidates(kind: Kind, name: &Path, beside: Option<&Path>) -> Vec<PathBuf> {
+    let base = beside.and_then(Path::parent).unwrap_or(Path::new(""));
+    let mut candidates = vec![normalize(&base.join(name))];
+    if name.is_relative() {
+        for folder in base.ancestors() {
+            let candidate = normalize(&folder.join(kind.folder()).join(name));
+            if !candidates.contains(&candidate) && !folder.starts_with(LIBRARY) {
+                candidates.push(candidate);
+            }
+        }
+    }
+    candidates
 }
 
 /// The prefix of paths of files that the program carries.

@@ -307,6 +307,46 @@ fn a_new_graph_with_state_runs_and_sees_the_pointer() {
 }
 
 #[test]
+fn numbered_files_are_frames() {
+    if !has_adapter() {
+        return;
+    }
+    let project = Project::new();
+    // Frame n has a row of n dots; there is no frame 4, and 6 is damaged.
+    let row = |n: usize| format!("x,y,z\n{}", (0..n).map(|i| format!("{i},{n},0\n")).collect::<String>());
+    for n in [2, 3, 5, 7] {
+        project.write(&format!("scenes/assets/row_{n:03}.csv"), &row(n));
+    }
+    project.write("scenes/assets/row_006.csv", "x,y,z\n1,2\n");
+    project.edit("scenes/dots.ron", "assets/dots.csv", "assets/row_###.csv");
+    let args =
+        ["render", "scenes/dots.ron", "--size", "64x48", "--eye", "2,3,9", "--target", "2,3,0", "--radius", "0.3"];
+    let run = good(project.run(&[&args[..], &["-o", "f_##.png", "--frames", "2..8"]].concat()));
+    for words in [
+        "frame 4: there is no file `scenes/assets/row_004.csv`: frame 3 is shown in its place",
+        "frame 6: `scenes/assets/row_006.csv`: line 2, column 1: expected 3 cells as in the header, found 2: frame 5 is shown",
+    ] {
+        assert!(run.stderr.contains(words), "{}", run.stderr);
+    }
+    let picture = |name: &str| std::fs::read(project.path(name)).unwrap();
+    // A frame by itself is what it is amid others, and not what another is.
+    for (frame, like) in [("2", "f_02.png"), ("5", "f_05.png"), ("4", "f_03.png"), ("8", "f_07.png"), ("7", "f_07.png")]
+    {
+        good(project.run(&[&args[..], &["-o", "one.png", "--frame", frame]].concat()));
+        assert_eq!(picture("one.png"), picture(like), "frame {frame}");
+        assert_eq!(picture("one.png"), picture(&format!("f_0{frame}.png")), "frame {frame}");
+    }
+    assert_ne!(picture("f_02.png"), picture("f_03.png"));
+    // At 25 frames a second, the file after one of 0.04 s.
+    good(project.run(&[&args[..], &["-o", "one.png", "--time", "0.05"]].concat()));
+    assert_eq!(picture("one.png"), picture("f_03.png"));
+    let bare = ["render", "scenes/assets/row_###.csv", "--size", "64x48", "--radius", "0.3"];
+    good(project.run(&[&bare[..], &["-o", "b.png", "--frames", "2..3", "--graph", "graphs/dots.ron"]].concat()));
+    let none = ["render", "scenes/assets/rows_###.csv", "-o", "c.png"];
+    refused(&project, &none, 2, &["no file is named `scenes/assets/rows_###.csv` with a number in place of the `#`"]);
+}
+
+#[test]
 fn sequences_are_numbered_and_dumps_hold_what_was_asked_for() {
     if !has_adapter() {
         return;

@@ -12,11 +12,12 @@ use std::collections::BTreeSet;
 use std::process::ExitCode;
 
 use generate::{Generated, grow};
-use meniscus::diagnostic::{Diagnostics, Style, render_all};
+use meniscus::diagnostic::{Diagnostics, Sources, Style, render_all};
 use meniscus::engine::{Engine, Frame, Policy, StepInfo};
 use meniscus::format::TextureFormat;
 use meniscus::graph::value::Value;
-use meniscus::plan::model::{Bound, ObjectKind, ObjectRef, PassKind, Plan};
+use meniscus::plan::model::{Access, Bound, ObjectKind, ObjectRef, Pass, PassKind, Plan};
+use meniscus::plan::{instantiate, instantiate_in_program_order};
 use wgpu_types::{BufferUsages, TextureUsages};
 
 /// `MENISCUS_GRAPHS=5000` in the environment looks further.
@@ -25,6 +26,7 @@ const GRAPHS: u64 = 150;
 fn main() -> ExitCode {
     harness::run(cases![
         random_graphs_raise_no_error,
+        random_graphs_come_out_the_same_in_both_orders,
         a_format_that_was_changed_is_caught,
         a_usage_that_is_missing_is_caught,
         a_view_beyond_its_texture_is_caught,
@@ -89,6 +91,63 @@ fn random_graphs_raise_no_error(engine: &mut Engine) {
     }
     let all = ["arguments", "clear", "compute", "copy", "draw", "mips", "settle"];
     assert_eq!(kinds.into_iter().collect::<Vec<_>>(), all, "the graphs hold every kind of pass");
+}
+
+/// The bytes of every output after some frames.
+fn outputs(engine: &mut Engine, plan: Plan) -> Vec<Vec<u8>> {
+    let mut runner = engine.prepare(plan, None).unwrap_or_else(|refused| panic!("{:?}", refused.diagnostics));
+    for (number, steps) in [1, 3, 0].into_iter().enumerate() {
+        let steps = [steps];
+        let live = |name: &str, _: Option<&StepInfo>| (name == "camera.position").then(|| Value::vec([0.1, 0.2, 0.3]));
+        let frame = Frame { time: 0.25, delta: 0.25, frame: number as u64, steps: &steps, live: &live, only: None };
+        runner.run(engine, &frame).unwrap();
+        runner.finish(engine).unwrap();
+    }
+    let outputs: Vec<ObjectRef> = runner.plan().outputs.iter().map(|output| output.object).collect();
+    let read = outputs.into_iter().map(|object| {
+        let texture = runner.read_texture(engine, object, 0, None).map(|data| data.bytes);
+        texture.or_else(|_| runner.read_buffer(engine, object)).unwrap_or_default()
+    });
+    read.collect()
+}
+
+/// Brought together or as the program has them, passes make the same; two that need each other,
+/// swapped, do not.
+fn random_graphs_come_out_the_same_in_both_orders(engine: &mut Engine) {
+    let (mut moved, mut folded, mut caught) = (0, 0, 0);
+    for seed in 0..40 {
+        let graph = grow(&numbers(seed));
+        let loaded = meniscus::program::load(&graph.files(), &mut Sources::new(), "graphs/test.ron", None);
+        let mut request = graph.request(engine.gpu().features(), engine.gpu().limits(), false);
+        let program = loaded.program.unwrap();
+        request.roots = program.root.outputs.iter().map(|output| output.name.value.clone()).collect();
+        let grouped = instantiate(&program, &request).unwrap();
+        let plain = instantiate_in_program_order(&program, &request).unwrap();
+        if plain.passes.iter().any(|pass| pass.unordered) {
+            continue;
+        }
+        moved += grouped.order.moved.len();
+        folded += grouped.order.folded.len();
+        let expected = outputs(engine, plain.clone());
+        assert!(outputs(engine, grouped) == expected, "seed {seed}\n{}", graph.graph);
+        caught += usize::from(swapped(plain).is_some_and(|wrong| outputs(engine, wrong) != expected));
+    }
+    assert!(moved > 0 && folded > 0, "{moved} moved, {folded} folded: the graphs hold both");
+    assert!(caught > 0, "swapping what needs each other shows");
+}
+
+/// The plan with a pass in front of the one whose result it reads.
+fn swapped(mut plan: Plan) -> Option<Plan> {
+    let needs = |pair: &[Pass]| {
+        let same = pair[0].steps.is_none() && pair[1].steps.is_none();
+        let reads = |a: &Access| pair[1].accesses.iter().any(|b| b.read && b.object == a.object);
+        same && pair[0].accesses.iter().any(|a| a.write && reads(a))
+    };
+    let at = plan.passes.windows(2).rposition(needs)?;
+    plan.passes.swap(at, at + 1);
+    // In memory of their own, so that it is the order that shows.
+    alone(&mut plan);
+    Some(plan)
 }
 
 /// The first graphs, altered after planning: each alteration that applies must be caught.

@@ -16,6 +16,7 @@ mod plan {
     mod memory;
     mod order;
     mod parts;
+    mod points;
     mod printed;
     mod random;
     mod shipped;

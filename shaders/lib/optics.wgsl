@@ -39,3 +39,11 @@ fn bend_out(direction: vec3f, normal: vec3f, ior: f32) -> Bend {
 fn transmitted(absorption_per_m: vec3f, path_m: f32) -> vec3f {
     return exp(-absorption_per_m * max(path_m, 0.0));
 }
+
+/// Fresnel's reflectance of unpolarised light that comes from the air; `cosine` is that of the angle there.
+fn fresnel(cosine: f32, ior: f32) -> f32 {
+    let inner = sqrt(max(1.0 - (1.0 - cosine * cosine) / (ior * ior), 0.0));
+    let across = (cosine - ior * inner) / (cosine + ior * inner);
+    let along = (ior * cosine - inner) / (ior * cosine + inner);
+    return 0.5 * (across * across + along * along);
+}

@@ -1,8 +1,11 @@
-// The picture over its backdrop, exposed and tone-mapped.
+// The picture over its backdrop, exposed, balanced and tone-mapped.
 #import "lib/tone.wgsl"
+#import "lib/white.wgsl"
 
 struct Params {
     exposure: f32,
+    temperature: f32,
+    tint: f32,
     tone: u32,
     transparent: u32,
     brightness: f32,
@@ -17,7 +20,11 @@ fn presented(over: vec4f, backdrop: vec3f) -> vec4f {
     let gain = exp2(params.exposure);
     if params.transparent != 0u {
         let straight = over.rgb / max(over.a, 1.0e-4);
-        return vec4f(tone_mapped(gain * straight, params.tone) * over.a, over.a);
+        return vec4f(shown(gain * straight) * over.a, over.a);
     }
-    return vec4f(tone_mapped(gain * (over.rgb + (1.0 - over.a) * backdrop), params.tone), 1.0);
+    return vec4f(shown(gain * (over.rgb + (1.0 - over.a) * backdrop)), 1.0);
+}
+
+fn shown(color: vec3f) -> vec3f {
+    return tone_mapped(white_balanced(color, params.temperature, params.tint), params.tone);
 }

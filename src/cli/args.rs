@@ -38,7 +38,8 @@ pub enum Command {
 /// What `render`, `watch` and `bench` share.
 #[derive(Args, Clone, Debug)]
 pub struct SceneArgs {
-    /// A scene (.ron), or a particle file, which then gets a default camera, light and graph
+    /// A scene (.ron), or a particle file or a numbered sequence of them (dd_####.bgeo), which then gets a default camera,
+    /// light and graph
     #[arg(value_name = "SCENE|PARTICLES")]
     pub scene: PathBuf,
     /// The graph to use in place of the scene's
@@ -82,7 +83,7 @@ pub struct RenderArgs {
     pub output: PathBuf,
     #[command(flatten)]
     pub when: WhenArgs,
-    /// Numbered pictures of frames A to B; FILE may hold {} where the number goes
+    /// Numbered pictures of frames A to B; FILE may hold {} or #### where the number goes
     #[arg(long, value_name = "A..B", value_parser = frames, conflicts_with_all = ["frame", "time"])]
     pub frames: Option<FrameRange>,
     /// Write any texture (.png, .exr) or buffer (.ply, .obj, .csv, .json, .bin) by its instance path
@@ -99,7 +100,7 @@ pub struct RenderArgs {
 /// The moment that a picture shows.
 #[derive(Args, Clone, Copy, Debug, Default)]
 pub struct WhenArgs {
-    /// The frame's number, at 60 frames a second
+    /// The frame's number, at 60 frames a second; of a sequence of files, the file's number
     #[arg(long, value_name = "N", conflicts_with = "time")]
     pub frame: Option<u64>,
     /// Seconds since the start
@@ -185,6 +186,15 @@ pub struct BenchArgs {
     pub frames: u32,
     #[arg(long, value_enum, default_value_t = BenchFormat::Table)]
     pub format: BenchFormat,
+    /// Compare with an earlier measurement, as `--format json` wrote it
+    #[arg(long, value_name = "FILE")]
+    pub compare: Option<PathBuf>,
+    /// Compare with another scene, frame by frame in turn: tells smaller differences
+    #[arg(long, value_name = "SCENE", conflicts_with = "compare")]
+    pub against: Option<PathBuf>,
+    /// Exit with 1 if the comparison says slower
+    #[arg(long)]
+    pub deny_slower: bool,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

@@ -10,12 +10,12 @@ use super::args::RenderArgs;
 use super::dump;
 use super::output::Output;
 use super::report::{Exit, report, say};
-use super::session::{Opening, job, moment, numbered};
+use super::session::{Opening, job, numbered, when};
 use super::table;
 use crate::diagnostic::{Code, Diagnostic, Diagnostics, Sources};
 use crate::files::DiskFiles;
 use crate::host::picture::PictureKind;
-use crate::host::{Cache, Moment, Session, load};
+use crate::host::{Cache, Player, Session, When, load};
 
 pub fn run(args: &RenderArgs) -> Exit {
     let mut sources = Sources::new();
@@ -37,6 +37,7 @@ fn render(args: &RenderArgs, sources: &mut Sources) -> Result<Diagnostics, Diagn
     let opening = Opening::begin(args.scene.backend.as_deref());
     let mut job = job(&args.scene);
     job.transparent = args.transparent;
+    job.when = pictures.first().map_or(When::Start, |(_, when)| *when);
     job.roots = dumps.iter().map(|d| d.path.clone()).collect();
     let loaded = load(&DiskFiles, sources, &job, &mut Cache::default());
     let mut notes = loaded.diagnostics;
@@ -106,14 +107,14 @@ fn picture_kind(path: &std::path::Path) -> Result<PictureKind, Diagnostic> {
     })
 }
 
-/// The files to write and the moment that each shows.
-fn pictures(args: &RenderArgs) -> Result<Vec<(PathBuf, Moment)>, Diagnostic> {
-    let Some(frames) = &args.frames else { return Ok(vec![(args.output.clone(), moment(args.when))]) };
+/// The files to write and when each is.
+fn pictures(args: &RenderArgs) -> Result<Vec<(PathBuf, When)>, Diagnostic> {
+    let Some(frames) = &args.frames else { return Ok(vec![(args.output.clone(), when(args.when))]) };
     let count = frames.0.end() - frames.0.start();
     if count >= MOST_FRAMES {
         return Err(Diagnostic::error(Code::USAGE, format!("a sequence has at most {MOST_FRAMES} frames")));
     }
-    Ok(frames.0.clone().map(|frame| (numbered(&args.output, frame), Moment::at_frame(frame))).collect())
+    Ok(frames.0.clone().map(|frame| (numbered(&args.output, frame), When::Frame(frame))).collect())
 }
 
 const MOST_FRAMES: u64 = 10_000;
@@ -122,14 +123,20 @@ fn draw(
     args: &RenderArgs,
     kind: PictureKind,
     session: &mut Session,
-    pictures: &[(PathBuf, Moment)],
+    pictures: &[(PathBuf, When)],
     clock: &mut Clock,
 ) -> Result<Diagnostics, Diagnostics> {
     let mut notes = Diagnostics::new();
     let bar = progress(pictures.len());
-    for (path, at) in pictures {
+    let tracks = session.tracks().to_vec();
+    let mut player = pictures.first().map(|(_, first)| Player::new(&tracks, *first, DiskFiles));
+    for (path, when) in pictures {
         let output = Output::reserve(path)?;
-        let drawn = session.draw(*at, kind == PictureKind::Png)?;
+        let inputs = player.as_mut().map(|player| player.inputs(*when, &mut notes)).unwrap_or_default();
+        clock.lap("waiting for a frame's files");
+        notes.extend(session.feed(inputs).map_err(|e| with(&notes, e))?);
+        clock.lap("building");
+        let drawn = session.draw(when.moment(tracks.first()), kind == PictureKind::Png)?;
         notes.extend(drawn.diagnostics);
         clock.lap("drawing");
         output.write(&session.encoded(kind, args.transparent)?)?;

@@ -6,7 +6,7 @@ use super::args::{SceneArgs, WhenArgs};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::engine::{Gpu, GpuOptions};
 pub use crate::host::picture::numbered;
-use crate::host::{Job, Moment};
+use crate::host::{Job, When};
 
 /// What the arguments ask to see.
 pub fn job(args: &SceneArgs) -> Job {
@@ -23,14 +23,15 @@ pub fn job(args: &SceneArgs) -> Job {
         pointer: args.pointer,
         transparent: false,
         roots: Vec::new(),
+        when: When::Start,
     }
 }
 
-pub fn moment(when: WhenArgs) -> Moment {
-    match (when.frame, when.time) {
-        (_, Some(time)) => Moment::at_time(time),
-        (Some(frame), None) => Moment::at_frame(frame),
-        (None, None) => Moment::default(),
+pub fn when(args: WhenArgs) -> When {
+    match (args.frame, args.time) {
+        (_, Some(time)) => When::Time(time),
+        (Some(frame), None) => When::Frame(frame),
+        (None, None) => When::Start,
     }
 }
 

@@ -6,12 +6,12 @@ use std::time::{Duration, Instant, SystemTime};
 use super::args::WatchArgs;
 use super::output::Output;
 use super::report::{Exit, report, say};
-use super::session::{Opening, job, moment};
+use super::session::{Opening, job, when};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics, Sources};
 use crate::engine::any_device_gone;
 use crate::files::DiskFiles;
 use crate::host::picture::PictureKind;
-use crate::host::{Cache, Job, Moment, Session, load, renderable};
+use crate::host::{Cache, Job, Session, load, renderable};
 use crate::reload::{Change, Watch};
 
 pub fn run(args: &WatchArgs) -> Exit {
@@ -33,9 +33,9 @@ fn watch(args: &WatchArgs) -> Result<std::convert::Infallible, Diagnostics> {
     let mut watch = Watch::new().map_err(|error| blind(&error))?;
     let mut job = job(&args.scene);
     job.transparent = args.transparent;
+    job.when = when(args.when);
     let session = Session::new(opening.wait()?);
-    let mut follower =
-        Follower { args, kind, job, at: moment(args.when), session, cache: Cache::default(), reloads: 0 };
+    let mut follower = Follower { args, kind, job, session, cache: Cache::default(), reloads: 0 };
     let mut change = None;
     loop {
         let since = SystemTime::now();
@@ -58,7 +58,6 @@ struct Follower<'a> {
     args: &'a WatchArgs,
     kind: PictureKind,
     job: Job,
-    at: Moment,
     session: Session,
     cache: Cache,
     reloads: usize,
@@ -117,7 +116,8 @@ impl Follower<'_> {
         found.extend(built.diagnostics);
         let building = began.elapsed();
         let began = Instant::now();
-        let drawn = self.session.draw(self.at, self.kind == PictureKind::Png)?;
+        let at = self.job.when.moment(self.session.tracks().first());
+        let drawn = self.session.draw(at, self.kind == PictureKind::Png)?;
         found.extend(drawn.diagnostics);
         let bytes = self.session.encoded(self.kind, self.args.transparent)?;
         Output::reserve(&self.args.output)?.write(&bytes)?;

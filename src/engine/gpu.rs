@@ -2,6 +2,7 @@
 //! goes wrong on it. Nothing here panics: what wgpu reports outside an error scope becomes a
 //! diagnostic of the next call.
 
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
@@ -40,6 +41,7 @@ pub struct Gpu {
     device: wgpu::Device,
     queue: wgpu::Queue,
     faults: Arc<Mutex<Faults>>,
+    uploaded: Arc<AtomicU64>,
 }
 
 /// What plans may make use of, where an adapter has it.
@@ -143,7 +145,7 @@ impl Gpu {
             // A device that is dropped or destroyed on purpose is nobody's fault, but nothing runs on it either.
             lost.lock().unwrap_or_else(PoisonError::into_inner).lost(format!("{reason:?}: {message}"));
         });
-        Self { instance: None, adapter, device, queue, faults }
+        Self { instance: None, adapter, device, queue, faults, uploaded: Arc::default() }
     }
 
     /// Every adapter of the machine, those of GL only if it is named.
@@ -173,6 +175,29 @@ impl Gpu {
 
     pub fn queue(&self) -> &wgpu::Queue {
         &self.queue
+    }
+
+    /// Writes to a buffer, and counts it.
+    pub(super) fn write_buffer(&self, buffer: &wgpu::Buffer, at: u64, bytes: &[u8]) {
+        self.uploaded.fetch_add(bytes.len() as u64, Ordering::Relaxed);
+        self.queue.write_buffer(buffer, at, bytes);
+    }
+
+    /// Writes to a texture, and counts it.
+    pub(super) fn write_texture(
+        &self,
+        texture: wgpu::TexelCopyTextureInfo<'_>,
+        bytes: &[u8],
+        layout: wgpu::TexelCopyBufferLayout,
+        size: wgpu::Extent3d,
+    ) {
+        self.uploaded.fetch_add(bytes.len() as u64, Ordering::Relaxed);
+        self.queue.write_texture(texture, bytes, layout, size);
+    }
+
+    /// Bytes that the engine has written to the device up to now.
+    pub fn uploaded_bytes(&self) -> u64 {
+        self.uploaded.load(Ordering::Relaxed)
     }
 
     pub fn features(&self) -> Features {

@@ -9,13 +9,13 @@
 
 mod bind;
 mod carry;
+mod claims;
 mod clear;
 mod compile;
 mod convert;
 mod encode;
 mod errors;
 mod gpu;
-mod join;
 mod kernels;
 mod materials;
 mod meshes;

@@ -40,6 +40,13 @@ pub(super) enum Description {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Handle(usize);
 
+impl Handle {
+    /// The same for objects that share memory.
+    pub fn number(self) -> usize {
+        self.0
+    }
+}
+
 #[derive(Clone, Debug)]
 struct Slot {
     description: Description,

@@ -6,12 +6,12 @@ use std::sync::Arc;
 
 use super::bind::{Fixed, references};
 use super::carry::{self, Carried, Content};
+use super::claims::{Claimant, Claims};
 use super::clear;
 use super::compile::Compiler;
 use super::convert;
 use super::errors;
 use super::gpu::Gpu;
-use super::join;
 use super::kernels;
 use super::materials::Materials;
 use super::meshes::{self, ByFaces};
@@ -24,6 +24,7 @@ use super::timing::Timing;
 use super::uniform::Uniforms;
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::plan::changes::Changes;
+use crate::plan::merge;
 use crate::plan::model::{Draw, ObjectRef, Origin, Pass, PassKind, Plan, ShaderUse};
 
 /// A device with the pipelines that were made on it.
@@ -31,6 +32,7 @@ use crate::plan::model::{Draw, ObjectRef, Origin, Pass, PassKind, Plan, ShaderUs
 pub struct Engine {
     gpu: Gpu,
     compiler: Compiler,
+    claims: Claims,
     /// Which objects share memory, from the next preparation on.
     pub policy: Policy,
 }
@@ -50,6 +52,7 @@ pub struct Runner {
     pub(super) leaders: Vec<usize>,
     pub(super) uniforms: Uniforms,
     pub(super) fixed: Fixed,
+    pub(super) claimant: Claimant,
     pub(super) timing: Timing,
     /// How far each ring has turned.
     pub(super) rotation: Vec<usize>,
@@ -84,7 +87,7 @@ pub struct Refused {
 
 impl Engine {
     pub fn new(gpu: Gpu) -> Self {
-        Self { compiler: Compiler::new(&gpu), gpu, policy: Policy::default() }
+        Self { compiler: Compiler::new(&gpu), gpu, claims: Claims::default(), policy: Policy::default() }
     }
 
     pub fn gpu(&self) -> &Gpu {
@@ -118,7 +121,7 @@ impl Engine {
         let fixed = errors::scoped(&self.gpu, || Fixed::new(&self.gpu, &plan))
             .map_err(|e| Diagnostic::error(Code::DEVICE, format!("the device refused the engine's buffers: {e}")))?;
         let kept_inputs = (0..plan.objects.len()).map(|id| is_input(&plan, id) && pool.memory(id).is_some()).collect();
-        let leaders = join::leaders(&plan, &pool);
+        let leaders = merge::leaders(&plan, &|id| pool.handle(id).number());
         let draws_joined = leaders.iter().enumerate().filter(|(pass, leader)| pass != *leader).count();
         let (rotation, done) = progress(&plan, previous, &state_kept);
         let materials = Materials::new(&self.gpu, &plan, previous.map(|p| &p.materials));
@@ -140,6 +143,7 @@ impl Engine {
             variants: plan.passes.iter().map(|_| Variants::new()).collect(),
             rings_of: plan.passes.iter().map(rings_of).collect(),
             timing: Timing::new(&self.gpu, &plan),
+            claimant: previous.map_or_else(|| Claimant::new(&self.claims), |p| p.claimant.clone()),
             leaders,
             rotation,
             done,

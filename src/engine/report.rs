@@ -19,6 +19,8 @@ pub struct Report {
     pub compute_passes: u32,
     pub render_passes: u32,
     pub submissions: u32,
+    /// Bytes that went to the device since the frame before: uniforms, and what was uploaded.
+    pub uploaded_bytes: u64,
     /// Counted buffers that were settled. Empty until the GPU's answer is there.
     pub counts: Vec<CountReport>,
     /// What each of the plan's units did, and why. Empty if the plan says nothing of units.

@@ -66,6 +66,30 @@ impl Runner {
     /// If a live name has no value, the device refuses something, or it was lost. What is on
     /// the GPU may then be of no frame, and the steps count as not done.
     pub fn run(&mut self, engine: &Engine, frame: &Frame<'_>) -> Result<Report, Diagnostics> {
+        self.carry_out(engine, frame, None)
+    }
+
+    /// The same into an embedder's commands, who submits them: after everything that was encoded
+    /// before, and before the next frame of this runner is encoded. The report of the frame comes
+    /// by [`Runner::poll`] once they were.
+    ///
+    /// # Errors
+    /// As [`Runner::run`]; what the device refuses of the commands is told with the next frame.
+    pub fn encode(
+        &mut self,
+        engine: &Engine,
+        frame: &Frame<'_>,
+        encoder: &mut wgpu::CommandEncoder,
+    ) -> Result<Report, Diagnostics> {
+        self.carry_out(engine, frame, Some(encoder))
+    }
+
+    fn carry_out(
+        &mut self,
+        engine: &Engine,
+        frame: &Frame<'_>,
+        into: Option<&mut wgpu::CommandEncoder>,
+    ) -> Result<Report, Diagnostics> {
         let gpu = engine.gpu();
         gpu.check()?;
         let began = Instant::now();
@@ -79,6 +103,7 @@ impl Runner {
         self.timing.decided(self.changes.decision());
         if !runs_any {
             self.changes.done(&self.plan, frame.steps, frame.only);
+            self.timing.uploaded(gpu.uploaded_bytes());
             self.timing.submitted(began.elapsed().as_secs_f64() * 1e3);
             return Ok(self.report());
         }
@@ -87,13 +112,15 @@ impl Runner {
         let rotation = self.rotation.clone();
         let done = self.done.clone();
         let chosen = self.choose(frame.only);
-        let encoded = self.encode(gpu, &Frame { only: Some(&chosen), ..*frame }, &steps);
+        let recorder = into.map_or_else(|| Recorder::new(gpu), Recorder::within);
+        let encoded = self.record_frame(gpu, &Frame { only: Some(&chosen), ..*frame }, &steps, recorder);
         self.chosen = chosen;
         if let Err(diagnostic) = encoded {
             (self.rotation, self.done) = (rotation, done);
             self.changes.failed();
             return Err(diagnostic.into());
         }
+        self.timing.uploaded(gpu.uploaded_bytes());
         self.timing.submitted(began.elapsed().as_secs_f64() * 1e3);
         self.stamp();
         match gpu.check() {
@@ -218,8 +245,13 @@ impl Runner {
         infos
     }
 
-    fn encode(&mut self, gpu: &Gpu, frame: &Frame<'_>, steps: &[StepInfo]) -> Result<(), Diagnostic> {
-        let mut recorder = Recorder::new(gpu);
+    fn record_frame(
+        &mut self,
+        gpu: &Gpu,
+        frame: &Frame<'_>,
+        steps: &[StepInfo],
+        mut recorder: Recorder<'_>,
+    ) -> Result<(), Diagnostic> {
         self.clear_counts(recorder.encoder(), frame.only);
         let mut staged = 0;
         let mut at = 0;
@@ -240,7 +272,7 @@ impl Runner {
             at = range.end.max(at + 1);
         }
         self.timing.capture(gpu, &self.plan, recorder.encoder(), &self.fixed.stats);
-        self.timing.handed_over(recorder.submit(gpu));
+        self.timing.handed_over(recorder.end(gpu));
         Ok(())
     }
 

@@ -20,6 +20,22 @@ const WAITING: u8 = 1;
 const READY: u8 = 2;
 const FAILED: u8 = 3;
 
+/// An answer on its way. Commands that nobody submits take it with them.
+struct Answer(Arc<AtomicU8>);
+
+impl Answer {
+    fn came(&self, is_there: bool) {
+        self.0.store(if is_there { READY } else { FAILED }, Ordering::Release);
+    }
+}
+
+impl Drop for Answer {
+    fn drop(&mut self) {
+        // What came stays as it is.
+        _ = self.0.compare_exchange(WAITING, FAILED, Ordering::AcqRel, Ordering::Acquire);
+    }
+}
+
 #[derive(Debug)]
 struct Slot {
     buffer: wgpu::Buffer,
@@ -35,6 +51,7 @@ struct Frame {
     /// With submitting.
     encode_ms: f64,
     begun: Begun,
+    uploaded_bytes: u64,
     /// The pass of each pair of queries.
     marks: Vec<usize>,
     /// Passes whose time is in that of another, which began what they share.
@@ -63,6 +80,8 @@ pub(super) struct Timing {
     now: Frame,
     /// The slot that the current frame's answer goes to.
     captured: Option<usize>,
+    /// Bytes that had gone to the device at the frame before.
+    uploaded: u64,
     latest: Option<(u64, Report, Decision)>,
 }
 
@@ -82,6 +101,7 @@ impl Timing {
             slots: Vec::new(),
             now: Frame::default(),
             captured: None,
+            uploaded: gpu.uploaded_bytes(),
             latest: None,
         };
         timing.grow(gpu, plan.passes.len() as u32);
@@ -250,6 +270,11 @@ impl Timing {
         if self.stats_bytes > 0 {
             encoder.copy_buffer_to_buffer(stats, 0, target, u64::from(self.pairs) * 16, self.stats_bytes);
         }
+        let slot = &mut self.slots[at];
+        slot.frame.clone_from(&self.now);
+        slot.state.store(WAITING, Ordering::Release);
+        let answer = Answer(Arc::clone(&slot.state));
+        encoder.map_buffer_on_submit(&slot.buffer, wgpu::MapMode::Read, .., move |mapped| answer.came(mapped.is_ok()));
         self.captured = Some(at);
     }
 
@@ -262,22 +287,23 @@ impl Timing {
         self.captured.is_some()
     }
 
+    /// Notes how many bytes have gone to the device up to now.
+    pub fn uploaded(&mut self, bytes: u64) {
+        self.now.uploaded_bytes = bytes - self.uploaded;
+        self.uploaded = bytes;
+    }
+
     /// Notes what was submitted.
     pub fn handed_over(&mut self, begun: Begun) {
         self.now.begun = begun;
     }
 
-    /// Asks for the captured answer, after the submission.
+    /// Notes how long the frame took on the CPU, also for the answer that is on its way.
     pub fn submitted(&mut self, encode_ms: f64) {
         self.now.encode_ms = encode_ms;
-        let Some(at) = self.captured else { return };
-        let slot = &mut self.slots[at];
-        slot.frame.clone_from(&self.now);
-        slot.state.store(WAITING, Ordering::Release);
-        let state = Arc::clone(&slot.state);
-        slot.buffer.map_async(wgpu::MapMode::Read, .., move |mapped| {
-            state.store(if mapped.is_ok() { READY } else { FAILED }, Ordering::Release);
-        });
+        if let Some(at) = self.captured {
+            self.slots[at].frame.clone_from(&self.now);
+        }
     }
 
     /// Reads the answers that have come.
@@ -350,6 +376,7 @@ fn report(plan: &Plan, frame: &Frame) -> Report {
         compute_passes: frame.begun.compute_passes,
         render_passes: frame.begun.render_passes,
         submissions: frame.begun.submissions,
+        uploaded_bytes: frame.uploaded_bytes,
         counts: Vec::new(),
         units: Vec::new(),
         complete: false,

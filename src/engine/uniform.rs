@@ -75,7 +75,7 @@ impl Uniforms {
         let mut uniforms = Self { places, outside, regions, bytes, buffer, staging: None, staged: Vec::new() };
         uniforms.pack_known(plan)?;
         if let Some(buffer) = &uniforms.buffer {
-            gpu.queue().write_buffer(buffer, 0, &uniforms.bytes);
+            gpu.write_buffer(buffer, 0, &uniforms.bytes);
         }
         Ok(uniforms)
     }
@@ -115,7 +115,7 @@ impl Uniforms {
         if let Some(buffer) = &self.buffer
             && before != self.bytes[span(&region)]
         {
-            gpu.queue().write_buffer(buffer, region.start, &self.bytes[span(&region)]);
+            gpu.write_buffer(buffer, region.start, &self.bytes[span(&region)]);
         }
         Ok(())
     }
@@ -150,7 +150,7 @@ impl Uniforms {
             }));
         }
         if let Some(staging) = &self.staging {
-            gpu.queue().write_buffer(staging, 0, &self.staged);
+            gpu.write_buffer(staging, 0, &self.staged);
         }
         Ok(())
     }

@@ -25,11 +25,11 @@ impl Runner {
         }
         // Writes are of whole words.
         let whole = bytes.len() / 4 * 4;
-        engine.gpu().queue().write_buffer(buffer, 0, &bytes[..whole]);
+        engine.gpu().write_buffer(buffer, 0, &bytes[..whole]);
         if whole < bytes.len() {
             let mut word = [0; 4];
             word[..bytes.len() - whole].copy_from_slice(&bytes[whole..]);
-            engine.gpu().queue().write_buffer(buffer, whole as u64, &word);
+            engine.gpu().write_buffer(buffer, whole as u64, &word);
         }
         self.note_content(object, Content::Own);
         Ok(())
@@ -57,7 +57,7 @@ impl Runner {
             let message = format!("takes {expected} bytes for mip {mip}, not {}", bytes.len());
             return Err(self.unfit(object, &message));
         }
-        engine.gpu().queue().write_texture(
+        engine.gpu().write_texture(
             wgpu::TexelCopyTextureInfo {
                 texture,
                 mip_level: mip,
@@ -193,6 +193,11 @@ impl Runner {
         if !fits {
             return Err(self.unfit(object, &format!("was planned as {}", self.planned(object))));
         }
+        if let Some(lacking) = lacking(&self.plan.objects[object].kind, &memory) {
+            let hint = format!("make it with `plan.needs(\"{}\")`'s usages", self.plan.objects[object].path);
+            return Err(self.unfit(object, &format!("was given what lacks the usage {lacking}")).hint(hint));
+        }
+        self.claim(object, &memory)?;
         let is_news = self.pool.share(object, memory);
         if is_news {
             self.forget_variants(object);
@@ -201,6 +206,18 @@ impl Runner {
             self.note_content(object, source);
         }
         Ok(())
+    }
+
+    /// What two graphs write would depend on which of them ran last.
+    fn claim(&self, object: ObjectId, memory: &Memory) -> Result<(), Diagnostic> {
+        if !self.writers.iter().any(|(written, _)| *written == object) {
+            return Ok(());
+        }
+        let (graph, path) = (self.plan.graph.display().to_string(), &self.plan.objects[object].path);
+        self.claimant.claim(memory, &graph, path).map_err(|(other, written)| {
+            self.unfit(object, &format!("cannot be written where `{written}` of {other} is written already"))
+                .hint("give each of them a texture or buffer of its own, or let one read what the other writes")
+        })
     }
 
     /// Gives an object memory of its own to write to.
@@ -231,6 +248,20 @@ impl Runner {
     fn unfit(&self, object: ObjectId, why: &str) -> Diagnostic {
         let object = &self.plan.objects[object];
         Diagnostic::error(Code::BAD_PARAMETER, format!("`{}` {why}", object.path)).at(object.span, "declared here")
+    }
+}
+
+/// Usages that passes need and the memory has not.
+fn lacking(planned: &ObjectKind, memory: &Memory) -> Option<String> {
+    let names = |names: Vec<&str>| (!names.is_empty()).then(|| names.join(" and "));
+    match (planned, memory) {
+        (ObjectKind::Texture(t), Memory::Texture(texture)) => {
+            names((t.usages - texture.usage()).iter_names().map(|(name, _)| name).collect())
+        }
+        (ObjectKind::Buffer(b), Memory::Buffer(buffer)) => {
+            names((b.usages - buffer.usage()).iter_names().map(|(name, _)| name).collect())
+        }
+        _ => None,
     }
 }
 

@@ -9,6 +9,7 @@ use twox_hash::XxHash3_128;
 
 use super::models::Models;
 use crate::diagnostic::{Code, Diagnostic, Diagnostics, Span};
+use crate::scene::cube;
 use crate::scene::image::Image;
 use crate::scene::particles::{self, ParticleSet};
 
@@ -18,6 +19,16 @@ pub struct Particles {
     pub set: Arc<ParticleSet>,
     /// Metres.
     pub radius_m: f64,
+    /// Lowest and highest corner in metres: those of the positions, unless somebody said others.
+    pub min: [f32; 3],
+    pub max: [f32; 3],
+}
+
+impl Particles {
+    pub fn new(set: Arc<ParticleSet>, radius_m: f64, bounds: Option<[[f32; 3]; 2]>) -> Self {
+        let [min, max] = bounds.unwrap_or([set.min, set.max]);
+        Self { set, radius_m, min, max }
+    }
 }
 
 /// A file's content, decoded.
@@ -34,6 +45,8 @@ pub struct Cache {
     assets: BTreeMap<PathBuf, Decoded>,
     sized: BTreeMap<PathBuf, Arc<Particles>>,
     pub(super) models: Models,
+    /// A cube's pictures, and what they made.
+    cube: Option<(Vec<Arc<Image>>, Arc<Image>)>,
 }
 
 #[derive(Debug)]
@@ -116,12 +129,50 @@ impl Cache {
         }
     }
 
+    /// One picture out of a cross of faces, or of six; the same as before if they are.
+    pub fn cube(&mut self, images: Vec<Arc<Image>>, at: Span, diagnostics: &mut Diagnostics) -> Option<Arc<Image>> {
+        let is_same = |known: &[Arc<Image>]| {
+            known.len() == images.len() && known.iter().zip(&images).all(|(a, b)| Arc::ptr_eq(a, b))
+        };
+        if let Some((_, made)) = self.cube.as_ref().filter(|(known, _)| is_same(known)) {
+            return Some(Arc::clone(made));
+        }
+        let made = match images.as_slice() {
+            [cross] => cube::faces_of_cross(cross).and_then(|faces| cube::equirect(&faces.each_ref())),
+            [px, nx, py, ny, pz, nz] => cube::equirect(&[px, nx, py, ny, pz, nz]),
+            // Some could not be read, which was reported.
+            _ => return None,
+        };
+        match made.map(Arc::new) {
+            Ok(made) => {
+                self.cube = Some((images, Arc::clone(&made)));
+                Some(made)
+            }
+            Err(error) => {
+                let failed = Diagnostic::error(Code::ASSET, error.message).at(at, "this is no cube");
+                diagnostics.push(error.hint.iter().fold(failed, Diagnostic::hint));
+                None
+            }
+        }
+    }
+
     /// A set with its radius; the same as before if neither changed.
-    pub fn sized(&mut self, path: &Path, set: Arc<ParticleSet>, radius_m: f64) -> Arc<Particles> {
+    pub fn sized(
+        &mut self,
+        path: &Path,
+        set: Arc<ParticleSet>,
+        radius_m: f64,
+        bounds: Option<[[f32; 3]; 2]>,
+    ) -> Arc<Particles> {
+        let sized = Particles::new(set, radius_m, bounds);
+        let is_same = |known: &Particles| {
+            Arc::ptr_eq(&known.set, &sized.set)
+                && (known.radius_m, known.min, known.max) == (sized.radius_m, sized.min, sized.max)
+        };
         match self.sized.get(path) {
-            Some(known) if Arc::ptr_eq(&known.set, &set) && known.radius_m == radius_m => Arc::clone(known),
+            Some(known) if is_same(known) => Arc::clone(known),
             _ => {
-                let sized = Arc::new(Particles { set, radius_m });
+                let sized = Arc::new(sized);
                 self.sized.insert(path.to_owned(), Arc::clone(&sized));
                 sized
             }
@@ -129,7 +180,7 @@ impl Cache {
     }
 }
 
-fn decode_particles(path: &Path, bytes: &[u8], estimate: bool) -> Result<(Asset, Diagnostics), Diagnostic> {
+pub(super) fn decode_particles(path: &Path, bytes: &[u8], estimate: bool) -> Result<(Asset, Diagnostics), Diagnostic> {
     let set = particles::read(path, bytes).map_err(|error| {
         let failed = Diagnostic::error(Code::ASSET, format!("`{}`: {error}", path.display()));
         error.hint.iter().fold(failed, Diagnostic::hint)

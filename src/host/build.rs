@@ -8,6 +8,7 @@ use wgpu_types::TextureUsages;
 use super::inputs::Input;
 use super::load::{COLOR, Content};
 use super::meshes::Meshes;
+use super::sequence::Track;
 use super::state::Held;
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::engine::{Compiled, Compiler, Engine, Gpu, MaterialImage, MaterialSampler, MaterialSlots, Runner, packing};
@@ -173,6 +174,35 @@ impl Session {
     pub fn run_all(&mut self, on: bool) {
         for runner in [&mut self.graph, &mut self.present].into_iter().flatten() {
             runner.run_all(on);
+        }
+    }
+
+    /// Swaps in other inputs, such as the next frame's; what they do not change stays as it is.
+    ///
+    /// # Errors
+    /// With everything that planning or the device refuses; then the session is as it was.
+    pub fn feed(&mut self, inputs: BTreeMap<String, Input>) -> Result<Diagnostics, Diagnostics> {
+        let Some(mut content) = self.content.clone().filter(|_| !inputs.is_empty()) else {
+            return Ok(Diagnostics::new());
+        };
+        for (name, input) in inputs {
+            let takers = [&mut content.inputs, &mut content.present_inputs];
+            for taken in takers.into_iter().filter_map(|taker| taker.get_mut(&name)) {
+                *taken = input.clone();
+            }
+        }
+        self.build(content).map(|built| built.diagnostics)
+    }
+
+    /// The numbered files that inputs are frames of.
+    pub fn tracks(&self) -> &[Track] {
+        self.content.as_ref().map_or(&[], |content| &content.tracks)
+    }
+
+    /// Whether GPU times are taken, where the device can.
+    pub fn time_passes(&mut self, on: bool) {
+        for runner in [&mut self.graph, &mut self.present].into_iter().flatten() {
+            runner.time_passes(on);
         }
     }
 

@@ -1,6 +1,7 @@
 //! Feeding a graph's inputs from a scene's items of the same names.
 
 use std::collections::BTreeMap;
+use std::ops::RangeInclusive;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -9,13 +10,15 @@ use wgpu_types::TextureUsages;
 use super::assets::{Asset, Cache, Particles, Pending, radius_m};
 use super::meshes::Meshes;
 use super::models::{MeshFiles, Reading};
-use crate::diagnostic::{Code, Diagnostic, Diagnostics};
+use super::sequence::Track;
+use crate::diagnostic::{Code, Diagnostic, Diagnostics, Span};
 use crate::format::TextureFormat;
 use crate::graph::model::{Graph, Input as Declared, InputKind};
 use crate::graph::value::Value;
 use crate::plan::fields::{self, FieldType};
 use crate::plan::model::{InputInfo, Texture};
 use crate::scene::image::Image;
+use crate::scene::sequence::Pattern;
 use crate::scene::{Light, PointerPath, Scene, find};
 
 /// What feeds an input.
@@ -40,15 +43,37 @@ pub(super) struct ParticleFile {
     pub pending: Option<Pending>,
     /// Metres, where somebody says.
     pub radius_m: Option<f64>,
+    /// Where somebody says.
+    pub bounds: Option<[[f32; 3]; 2]>,
+    /// The sequence that the file is a frame of.
+    pub sequence: Option<Frames>,
+}
+
+/// A sequence before its input and its radius are known.
+#[derive(Debug)]
+pub(super) struct Frames {
+    pub pattern: Pattern,
+    pub frames: RangeInclusive<u64>,
+    pub rate: f64,
 }
 
 /// Everything that a scene and the command line offer, files perhaps still being decoded.
 #[derive(Debug)]
 pub(super) struct Offer {
     pub particles: Vec<ParticleFile>,
-    pub images: Vec<(String, Option<Pending>)>,
+    pub images: Vec<ImageFiles>,
     pub meshes: Vec<MeshFiles>,
     pub models: Reading,
+}
+
+/// The picture files that feed a texture.
+#[derive(Debug)]
+pub(super) struct ImageFiles {
+    pub name: String,
+    /// Absent where there is no such file, which was reported.
+    pub pending: Vec<Option<Pending>>,
+    /// If they are a cube's, where the scene says so.
+    pub cube_at: Option<Span>,
 }
 
 /// Decoded files by the names of the inputs that they are for.
@@ -57,6 +82,8 @@ pub(super) struct Decoded {
     particles: BTreeMap<String, Arc<Particles>>,
     images: BTreeMap<String, Arc<Image>>,
     meshes: BTreeMap<String, Arc<Meshes>>,
+    /// Sequences that particles are frames of.
+    pub tracks: Vec<Track>,
     /// Names whose file has an error of its own: not missing.
     failed: Vec<String>,
 }
@@ -66,7 +93,7 @@ impl Offer {
     pub fn decode(self, graph: Option<&Graph>, cache: &mut Cache, diagnostics: &mut Diagnostics) -> Decoded {
         let mut decoded = Decoded::default();
         for file in self.particles {
-            let ParticleFile { name, path, pending, radius_m: said } = file;
+            let ParticleFile { name, path, pending, radius_m: said, bounds, sequence } = file;
             let name = name.map_or_else(|| only_particles(graph), Ok);
             let asset = pending.and_then(|pending| cache.finish(pending, diagnostics));
             let name = match name {
@@ -81,17 +108,38 @@ impl Offer {
                 continue;
             };
             match radius_m(&path, &set, estimated, said, diagnostics) {
-                Ok(radius_m) => _ = decoded.particles.insert(name, cache.sized(&path, set, radius_m)),
+                Ok(radius_m) => {
+                    decoded.tracks.extend(sequence.map(|Frames { pattern, frames, rate }| Track {
+                        input: name.clone(),
+                        pattern,
+                        frames,
+                        rate,
+                        radius_m,
+                        bounds,
+                    }));
+                    decoded.particles.insert(name, cache.sized(&path, set, radius_m, bounds));
+                }
                 Err(error) => {
                     diagnostics.push(error);
                     decoded.failed.push(name);
                 }
             }
         }
-        for (name, pending) in self.images {
-            match pending.and_then(|pending| cache.finish(pending, diagnostics)) {
-                Some(Asset::Image(image)) => _ = decoded.images.insert(name, image),
-                _ => decoded.failed.push(name),
+        for ImageFiles { name, pending, cube_at } in self.images {
+            let images: Vec<Arc<Image>> = pending
+                .into_iter()
+                .filter_map(|pending| match cache.finish(pending?, diagnostics) {
+                    Some(Asset::Image(image)) => Some(image),
+                    _ => None,
+                })
+                .collect();
+            let image = match cube_at {
+                None => images.into_iter().next(),
+                Some(span) => cache.cube(images, span, diagnostics),
+            };
+            match image {
+                Some(image) => _ = decoded.images.insert(name, image),
+                None => decoded.failed.push(name),
             }
         }
         let (meshes, failed) = cache.models.finish(self.models, self.meshes, diagnostics);
@@ -101,11 +149,13 @@ impl Offer {
     }
 }
 
-/// The name of a graph's one input of particles.
+/// The name of a graph's one input of particles, or of the one that it cannot do without.
 fn only_particles(graph: Option<&Graph>) -> Result<String, Diagnostic> {
     let Some(graph) = graph else { return Ok("particles".into()) };
     let takes = graph.inputs.iter().filter(|i| matches!(i.kind, InputKind::Particles { .. }));
-    let names: Vec<&str> = takes.map(|i| i.name.value.as_str()).collect();
+    let (needed, others): (Vec<_>, Vec<_>) = takes.partition(|i| !i.optional);
+    let takes = if needed.len() == 1 { needed } else { [needed, others].concat() };
+    let names: Vec<&str> = takes.iter().map(|i| i.name.value.as_str()).collect();
     let path = graph.path.display();
     match names.as_slice() {
         [name] => Ok((*name).to_owned()),
@@ -234,8 +284,8 @@ impl Input {
             Input::Particles(particles) => InputInfo::Particles {
                 count: particles.set.count as u64,
                 radius: particles.radius_m,
-                min: particles.set.min.map(f64::from),
-                max: particles.set.max.map(f64::from),
+                min: particles.min.map(f64::from),
+                max: particles.max.map(f64::from),
                 attributes: particles.set.attributes.iter().map(|a| (a.name.clone(), a.components as u32)).collect(),
             },
         }

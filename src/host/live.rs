@@ -3,6 +3,7 @@
 
 use super::build::{Session, is_color, move_meshes};
 use super::draw::nothing;
+use super::inputs::Input;
 use super::live_values::LiveValues;
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::engine::{Frame, Report, Screen, TextureData};
@@ -156,7 +157,9 @@ impl Session {
 
     /// Whether anything of the graph depends on time.
     pub fn changes_over_time(&self) -> bool {
-        self.plan().is_some_and(changes_over_time)
+        let mut inputs = self.content.iter().flat_map(|content| content.inputs.values());
+        let moves = inputs.any(|input| matches!(input, Input::Meshes(meshes) if meshes.info.animated));
+        moves || self.plan().is_some_and(changes_over_time)
     }
 }
 

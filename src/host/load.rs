@@ -8,16 +8,20 @@ use glam::DVec3;
 use wgpu_types::{Features, Limits};
 
 use super::assets::{AssetKind, Cache, Pending};
-use super::inputs::{self, Input, Offer, ParticleFile};
+use super::frames::{self, Located};
+use super::inputs::{self, Frames, ImageFiles, Input, Offer, ParticleFile};
 use super::models::{MeshFiles, Reading};
 use super::params::{self, Given, Raw};
+use super::sequence::{Track, When};
 use super::source;
 use crate::diagnostic::{Code, Diagnostic, Diagnostics, Sources, Span};
 use crate::files::{self, Files, Kind};
 use crate::graph::value::Value;
 use crate::plan::model::{InputInfo, Request, Texture};
 use crate::program::{self, Program, missing_file};
+use crate::scene::sequence::Sequence;
 use crate::scene::{self, Camera, Item, PointerPath, Scene, framing};
+use crate::syntax::Sp;
 
 /// The graph that turns light into a picture.
 const PRESENT: &str = "parts/present.ron";
@@ -50,6 +54,8 @@ pub struct Job {
     pub transparent: bool,
     /// Instance paths that are wanted besides the picture.
     pub roots: Vec<String>,
+    /// Which frame of sequences to begin with.
+    pub when: When,
 }
 
 /// Everything that a picture is made of.
@@ -66,6 +72,8 @@ pub struct Content {
     pub params: BTreeMap<String, Value>,
     pub present_params: BTreeMap<String, Value>,
     pub roots: Vec<String>,
+    /// Numbered files that inputs are frames of, in the order of the scene.
+    pub tracks: Vec<Track>,
 }
 
 /// What loading gave.
@@ -104,7 +112,7 @@ impl Loader<'_> {
         let source = source::read(self.files, &self.job.source, self.sources, &mut self.diagnostics)?;
         let scene = source.scene;
         // Files decode on other threads while the graphs are read.
-        let (particles, images) = (self.particles(&scene, source.particles), self.images(&scene));
+        let (particles, images) = (self.particles(&scene, source.is_particles), self.images(&scene));
         let (meshes, models) = self.meshes(&scene);
         let offer = Offer { particles, images, meshes, models };
         let program = self.graph(&scene);
@@ -127,7 +135,19 @@ impl Loader<'_> {
         }
         let roots = self.job.roots.clone();
         let (params, present_params) = (own, shared);
-        Some(Content { program, present, inputs, present_inputs, camera, viewport, params, present_params, roots })
+        let tracks = decoded.tracks;
+        Some(Content {
+            program,
+            present,
+            inputs,
+            present_inputs,
+            camera,
+            viewport,
+            params,
+            present_params,
+            roots,
+            tracks,
+        })
     }
 
     fn graph(&mut self, scene: &Scene) -> Option<Program> {
@@ -163,7 +183,7 @@ impl Loader<'_> {
     }
 
     /// The scene's particle files, with those that the command line puts in their place.
-    fn particles(&mut self, scene: &Scene, given: Option<Arc<[u8]>>) -> Vec<ParticleFile> {
+    fn particles(&mut self, scene: &Scene, given: bool) -> Vec<ParticleFile> {
         let (replaced, file) = match self.job.particles.as_deref().map(|text| (text, text.split_once('='))) {
             Some((_, Some((name, file)))) => (Some(name.to_owned()), Some(file.to_owned())),
             Some((file, None)) => (None, Some(file.to_owned())),
@@ -178,19 +198,57 @@ impl Loader<'_> {
                 continue;
             }
             let name = &item.value.file;
-            let (path, bytes) = self.asset(&name.value, &scene.path, name.span);
+            let (path, bytes, sequence) = match &item.value.sequence {
+                None => {
+                    let (path, bytes) = self.asset(&name.value, &scene.path, name.span);
+                    (path, bytes, None)
+                }
+                Some(sequence) => self.frame(&name.value, sequence, Some(&scene.path), Some(name.span)),
+            };
             let said = self.job.radius_m.or(item.value.radius_m.as_ref().map(|r| r.value));
-            list.push(self.particle_file(Some(item.name.value.clone()), path, bytes, said, Some(name.span)));
+            let file = self.particle_file(Some(item.name.value.clone()), path, bytes, said, Some(name.span));
+            list.push(ParticleFile { bounds: item.value.bounds, sequence, ..file });
         }
-        if let Some(bytes) = given {
-            list.push(self.particle_file(None, self.job.source.clone(), Some(bytes), self.job.radius_m, None));
-        }
-        if let Some(path) = file.map(PathBuf::from) {
-            self.read.push(path.clone());
-            let bytes = source::named(self.files, &path).map_err(|error| self.diagnostics.push(error)).ok();
-            list.push(self.particle_file(replaced, path, bytes, self.job.radius_m, None));
+        let source = given.then(|| (None, self.job.source.clone()));
+        for (name, path) in source.into_iter().chain(file.map(|file| (replaced, PathBuf::from(file)))) {
+            let (path, bytes, sequence) = match source::sequence(self.files, &path) {
+                Some(pattern) => self.frame(&pattern, &Sequence::default(), None, None),
+                None => {
+                    self.read.push(path.clone());
+                    let bytes = source::named(self.files, &path).map_err(|error| self.diagnostics.push(error)).ok();
+                    (path, bytes, None)
+                }
+            };
+            let file = self.particle_file(name, path, bytes, self.job.radius_m, None);
+            list.push(ParticleFile { sequence, ..file });
         }
         list
+    }
+
+    /// The file of a sequence that shows at the moment asked for.
+    fn frame(
+        &mut self,
+        name: &str,
+        sequence: &Sequence,
+        beside: Option<&Path>,
+        at: Option<Span>,
+    ) -> (PathBuf, Option<Arc<[u8]>>, Option<Frames>) {
+        let label = |found: Diagnostic| match at {
+            Some(span) => found.at(span, "named here"),
+            None => found,
+        };
+        match frames::locate(self.files, name, sequence, beside, self.job.when) {
+            Ok(Located { path, frames, held }) => {
+                held.into_iter().for_each(|held| self.diagnostics.push(label(held)));
+                self.read.push(path.clone());
+                let bytes = source::named(self.files, &path).map_err(|error| self.diagnostics.push(label(error))).ok();
+                (path, bytes, Some(frames))
+            }
+            Err(error) => {
+                self.diagnostics.push(label(error));
+                (PathBuf::from(name), None, None)
+            }
+        }
     }
 
     fn particle_file(
@@ -203,15 +261,19 @@ impl Loader<'_> {
     ) -> ParticleFile {
         let kind = AssetKind::Particles { estimate: radius_m.is_none() };
         let pending = bytes.map(|bytes| self.cache.begin(&path, bytes, kind, at));
-        ParticleFile { name, path, pending, radius_m }
+        ParticleFile { name, path, pending, radius_m, bounds: None, sequence: None }
     }
 
-    fn images(&mut self, scene: &Scene) -> Vec<(String, Option<Pending>)> {
+    /// The pictures of each name: one, or the six faces of a cube.
+    fn images(&mut self, scene: &Scene) -> Vec<ImageFiles> {
         let mut list = Vec::new();
         for Item { name, value: file, .. } in &scene.textures {
-            let (path, bytes) = self.asset(&file.value, &scene.path, file.span);
-            let begin = |bytes| self.cache.begin(&path, bytes, AssetKind::Image, Some(file.span));
-            list.push((name.value.clone(), bytes.map(begin)));
+            let pending = vec![self.image(file, &scene.path)];
+            list.push(ImageFiles { name: name.value.clone(), pending, cube_at: None });
+        }
+        if let Some(Item { name, value, span }) = &scene.cube {
+            let pending = value.files().iter().map(|file| self.image(file, &scene.path)).collect();
+            list.push(ImageFiles { name: name.value.clone(), pending, cube_at: Some(*span) });
         }
         list
     }
@@ -234,6 +296,11 @@ impl Loader<'_> {
             all.push(MeshFiles { name: item.name.value.clone(), entries: item.value.clone(), paths });
         }
         (all, reading)
+    }
+
+    fn image(&mut self, file: &Sp<String>, scene: &Path) -> Option<Pending> {
+        let (path, bytes) = self.asset(&file.value, scene, file.span);
+        Some(self.cache.begin(&path, bytes?, AssetKind::Image, Some(file.span)))
     }
 
     /// A file that a scene names: its path, and its bytes if it is there.

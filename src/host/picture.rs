@@ -8,6 +8,7 @@ use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use image::{ExtendedColorType, ImageBuffer, ImageEncoder as _, ImageFormat, Rgba};
 
 use crate::scene::image::encode_srgb;
+use crate::scene::sequence::Pattern;
 
 /// Texels as four numbers each, linear.
 #[derive(Clone, Debug, PartialEq)]
@@ -121,8 +122,12 @@ pub fn exr(texels: &Texels) -> Result<Vec<u8>, String> {
     Ok(bytes)
 }
 
-/// The name of the picture of a frame: `{}` in the name, or before its extension, the number.
+/// The name of the picture of a frame: the number in place of `{}` or a run of `#`, else before the
+/// extension.
 pub fn numbered(path: &Path, frame: u64) -> PathBuf {
+    if let Some(pattern) = Pattern::of(path) {
+        return pattern.path(frame);
+    }
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     let number = format!("{frame:04}");
     let numbered = match name.split_once("{}") {
@@ -180,5 +185,6 @@ mod tests {
     fn frames_are_numbered() {
         assert_eq!(numbered(Path::new("out/a.png"), 7), Path::new("out/a_0007.png"));
         assert_eq!(numbered(Path::new("out/{}-a.png"), 12345), Path::new("out/12345-a.png"));
+        assert_eq!(numbered(Path::new("out/a_###.png"), 7), Path::new("out/a_007.png"));
     }
 }

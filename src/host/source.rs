@@ -5,16 +5,17 @@ use std::sync::Arc;
 
 use crate::diagnostic::{Code, Diagnostic, Diagnostics, Sources};
 use crate::files::{Files, LIBRARY, library_file};
+use crate::scene::sequence::Pattern;
 use crate::scene::{self, Scene, particles};
 
 /// The scene for particles that came without one, in the library that the program carries.
 const DEFAULT_SCENE: &str = "scenes/default.ron";
 
-/// A scene, and the bytes of a particle file if that was given in its place.
+/// A scene, perhaps the default one for a particle file that was given in its place.
 #[derive(Debug)]
 pub(super) struct Source {
     pub scene: Scene,
-    pub particles: Option<Arc<[u8]>>,
+    pub is_particles: bool,
 }
 
 /// Whether a path names a scene file by its extension.
@@ -29,30 +30,37 @@ pub(super) fn read(
     sources: &mut Sources,
     diagnostics: &mut Diagnostics,
 ) -> Option<Source> {
-    let bytes = match renderable(files, path) {
-        Ok(bytes) => bytes,
-        Err(error) => {
-            diagnostics.push(error);
-            return None;
-        }
-    };
+    if let Err(error) = renderable(files, path) {
+        diagnostics.push(error);
+        return None;
+    }
     if is_scene(path) {
+        let bytes = named(files, path).map_err(|error| diagnostics.push(error)).ok()?;
         let scene = scene::read(path, &bytes, sources, diagnostics)?;
-        Some(Source { scene, particles: None })
+        Some(Source { scene, is_particles: false })
     } else {
         let scene = default_scene(sources, diagnostics)?;
-        Some(Source { scene, particles: Some(bytes) })
+        Some(Source { scene, is_particles: true })
     }
 }
 
-/// The bytes of a file that can be rendered, as far as its name tells.
+/// The pattern that a path of the command line is: a file that bears the `#` itself is one file.
+pub(super) fn sequence(files: &dyn Files, path: &Path) -> Option<String> {
+    Pattern::of(path).filter(|_| !files.exists(path))?;
+    path.to_str().map(str::to_owned)
+}
+
+/// Whether a file can be rendered, as far as its name tells.
 ///
 /// # Errors
-/// If it is missing, a folder or unreadable, or neither a scene nor a particle file.
-pub fn renderable(files: &dyn Files, path: &Path) -> Result<Arc<[u8]>, Diagnostic> {
-    let bytes = named(files, path)?;
+/// If it is missing or a folder, or neither a scene nor a particle file.
+pub fn renderable(files: &dyn Files, path: &Path) -> Result<(), Diagnostic> {
+    if !files.exists(path) && sequence(files, path).is_none() {
+        // Says why: missing, a folder, unreadable.
+        named(files, path)?;
+    }
     if is_scene(path) || particles::known_extension(path) {
-        return Ok(bytes);
+        return Ok(());
     }
     let message = format!("`{}` is neither a scene (.ron) nor a particle file", path.display());
     let ends: Vec<String> = particles::extensions().collect();

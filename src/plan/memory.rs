@@ -139,6 +139,37 @@ fn class(kind: &ObjectKind) -> Option<Texture> {
     }
 }
 
+/// Bytes of the largest set of objects of the frame that is live at once, if passes touch in this
+/// order what `touched` has of each.
+pub(super) fn live_at_once<'a>(
+    objects: &[&Object],
+    order: &[usize],
+    touched: impl Fn(usize) -> Vec<&'a [ObjectId]>,
+    steps: &[Steps],
+    own: &BTreeSet<ObjectId>,
+) -> u64 {
+    let mut lives: Vec<Option<(usize, usize)>> = vec![None; objects.len()];
+    for (at, pass) in order.iter().enumerate() {
+        for id in touched(*pass).into_iter().flatten() {
+            lives[*id] = Some(lives[*id].map_or((at, at), |(first, _)| (first, at)));
+        }
+    }
+    let mut change = vec![0i64; order.len() + 1];
+    for (id, (object, life)) in objects.iter().zip(lives).enumerate() {
+        let Some((first, last)) = life.filter(|_| object.origin == Origin::Frame) else { continue };
+        let inside = steps.iter().find(|s| first < s.passes.start && s.passes.contains(&last));
+        let end = inside.map_or(last + 1, |steps| steps.passes.end);
+        let size = bytes(&object.kind) as i64;
+        change[first] += size;
+        change[if own.contains(&id) { order.len() } else { end }] -= size;
+    }
+    let live = change.iter().scan(0, |live, c| {
+        *live += c;
+        Some(*live)
+    });
+    live.max().unwrap_or(0).max(0) as u64
+}
+
 fn lower_bound(objects: &[Object], of_frame: &[ObjectId], own: &BTreeSet<ObjectId>, passes: usize) -> u64 {
     // Bytes that begin and end at each pass; a running sum is the live set.
     let mut change = vec![0i64; passes + 1];

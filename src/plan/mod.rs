@@ -11,9 +11,11 @@ mod flow;
 mod insert;
 mod lower;
 pub mod memory;
+pub mod merge;
 pub mod meshes;
 pub mod model;
 pub mod needs;
+mod order;
 pub mod print;
 mod state;
 mod units;
@@ -34,7 +36,15 @@ use crate::program::Program;
 /// # Errors
 /// Everything that is wrong, at once where one fault does not hide another.
 pub fn instantiate(program: &Program, request: &Request) -> Result<Plan, Diagnostics> {
-    plan(program, request, false)
+    plan(program, request, Mode { stand_in: false, reorder: true })
+}
+
+/// The same with every pass where the program has it, for comparison: what comes out is equal.
+///
+/// # Errors
+/// As [`instantiate`].
+pub fn instantiate_in_program_order(program: &Program, request: &Request) -> Result<Plan, Diagnostics> {
+    plan(program, request, Mode { stand_in: false, reorder: false })
 }
 
 /// The same for a file by itself, with [`crate::check::stand_in`]'s request: what nothing
@@ -43,10 +53,20 @@ pub fn instantiate(program: &Program, request: &Request) -> Result<Plan, Diagnos
 /// # Errors
 /// As [`instantiate`].
 pub fn instantiate_stand_in(program: &Program, request: &Request) -> Result<Plan, Diagnostics> {
-    plan(program, request, true)
+    plan(program, request, Mode { stand_in: true, reorder: true })
 }
 
-fn plan(program: &Program, request: &Request, stand_in: bool) -> Result<Plan, Diagnostics> {
+/// How to plan.
+#[derive(Clone, Copy)]
+struct Mode {
+    /// A file by itself: what nothing describes is made up, and every output counts.
+    stand_in: bool,
+    /// Passes that may share one of the device's come together.
+    reorder: bool,
+}
+
+fn plan(program: &Program, request: &Request, mode: Mode) -> Result<Plan, Diagnostics> {
+    let stand_in = mode.stand_in;
     let mut lowering = Lowering::new(program, request, stand_in);
     unknown_params(&mut lowering);
     lowering.run();
@@ -73,25 +93,36 @@ fn plan(program: &Program, request: &Request, stand_in: bool) -> Result<Plan, Di
     }
     let argument_slots = insert::insert(&mut lowering);
     insert::cover_steps(&mut lowering);
+    let given = outputs.iter().flat_map(|output| lowering.object_ids(output.object));
+    let own: BTreeSet<ObjectId> = roots.iter().copied().chain(given).collect();
+    let order = if mode.reorder { order::order(&mut lowering, &own) } else { model::Order::default() };
     let (units, made_from) = units::units(&mut lowering);
     state::seal(&mut lowering, &made_from);
     if lowering.diagnostics.has_errors() {
         return Err(lowering.diagnostics);
     }
     mark_unordered(&mut lowering);
-    finish(lowering, outputs, &roots, culled, units, argument_slots, warnings)
+    let told = Told { culled, order, warnings };
+    finish(lowering, outputs, &own, told, units, argument_slots)
+}
+
+/// What planning says of what it did.
+struct Told {
+    culled: Vec<model::Culled>,
+    order: model::Order,
+    warnings: Diagnostics,
 }
 
 /// Puts the plan together, with lifetimes, memory and needs.
 fn finish(
     mut lowering: Lowering<'_>,
     outputs: Vec<Output>,
-    roots: &[ObjectId],
-    culled: Vec<model::Culled>,
+    own: &BTreeSet<ObjectId>,
+    told: Told,
     units: Vec<model::Unit>,
     argument_slots: u32,
-    mut warnings: Diagnostics,
 ) -> Result<Plan, Diagnostics> {
+    let Told { culled, order, mut warnings } = told;
     let mut objects: Vec<Object> = lowering.objects.iter().map(|b| b.object.clone()).collect();
     let runs: Vec<memory::Runs> = lowering.flat.iter().map(|f| (f.pass.unit, f.pass.steps)).collect();
     let touched: Vec<Vec<ObjectId>> = lowering
@@ -103,9 +134,7 @@ fn finish(
         })
         .collect();
     memory::lifetimes(&mut objects, &touched, &lowering.steps);
-    let given = outputs.iter().flat_map(|output| lowering.object_ids(output.object));
-    let own: BTreeSet<ObjectId> = roots.iter().copied().chain(given).collect();
-    let memory = memory::share(&objects, &runs, &touched, &units, &own);
+    let memory = memory::share(&objects, &runs, &touched, &units, own);
     let (needs, lacking) = needs::needs(&lowering, &objects);
     if lacking.has_errors() {
         lowering.diagnostics.extend(lacking);
@@ -124,6 +153,7 @@ fn finish(
         samplers: lowering.samplers,
         passes: lowering.flat.into_iter().map(|flat| flat.pass).collect(),
         culled,
+        order,
         units,
         rings: lowering.rings,
         steps: lowering.steps,

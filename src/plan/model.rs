@@ -38,8 +38,11 @@ pub struct Plan {
     /// Uniform blocks that the host packs; equal blocks are one.
     pub uniforms: Vec<UniformBlock>,
     pub samplers: Vec<Sampler>,
-    /// Live passes in program order.
+    /// Live passes in the order in which they run: that of the program, but for those that
+    /// [`Plan::order`] says.
     pub passes: Vec<Pass>,
+    /// Where that is not how the program has them.
+    pub order: Order,
     pub culled: Vec<Culled>,
     pub units: Vec<Unit>,
     pub rings: Vec<Ring>,
@@ -62,6 +65,42 @@ pub struct Plan {
     /// Number of 32-byte slots for indirect arguments that the engine's kernels write.
     pub argument_slots: u32,
     pub warnings: Diagnostics,
+}
+
+impl Plan {
+    /// What an input has to be: format, size and usages of a texture, bytes and usages of a buffer.
+    /// `path` is the input's name, or `input.attribute` for particles. With the number of the
+    /// object, under which a runner takes it.
+    pub fn needs(&self, path: &str) -> Option<(ObjectId, &ObjectKind)> {
+        let is_it = |object: &&Object| object.origin != Origin::Frame && object.path == path;
+        let (id, object) = self.objects.iter().enumerate().find(|(_, object)| is_it(object))?;
+        Some((id, &object.kind))
+    }
+}
+
+/// What planning did to the order of the program, without changing what comes out.
+#[derive(Clone, Debug, PartialEq, Eq, Default)]
+pub struct Order {
+    pub folded: Vec<Folded>,
+    pub moved: Vec<Moved>,
+}
+
+/// A clear that became the load of a target. It is no pass any more.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Folded {
+    /// Path of the clear.
+    pub clear: String,
+    /// Path of the draw whose target it was.
+    pub into: String,
+}
+
+/// Passes that run before one that the program has before them, to share a pass of the device
+/// with others of their kind.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Moved {
+    pub passes: Range<usize>,
+    /// The first of those that they were brought in front of.
+    pub before: usize,
 }
 
 /// One piece of memory with an identity.

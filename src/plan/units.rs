@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet, HashMap, VecDeque};
 
 use super::lower::Lowering;
-use super::model::{Causes, ObjectId, PassKind, Unit};
+use super::model::{Causes, Geometry, ObjectId, PassKind, Unit};
 
 /// Groups the passes into units, numbers them in program order, and closes their causes. Also gives,
 /// for each unit of steps, all that it is made from, through other steps too.
@@ -13,6 +13,7 @@ pub(super) fn units(lowering: &mut Lowering<'_>) -> (Vec<Unit>, BTreeMap<usize, 
     // Passes that write one group, and readers of a version other than the last.
     let mut writers: BTreeMap<ObjectId, Vec<usize>> = BTreeMap::new();
     let mut steps: BTreeMap<usize, usize> = BTreeMap::new();
+    let mut copied: HashMap<u32, usize> = HashMap::new();
     for (p, flat) in lowering.flat.iter().enumerate() {
         for access in flat.pass.accesses.iter().filter(|a| a.write) {
             let written = writers.entry(group[lowering.object_id(access.object)]).or_default();
@@ -26,9 +27,17 @@ pub(super) fn units(lowering: &mut Lowering<'_>) -> (Vec<Unit>, BTreeMap<usize, 
         if let Some(index) = flat.pass.steps {
             sets.join(*steps.entry(index).or_insert(p), p);
         }
-        // Arguments are copied for the draw behind, to a place that no name stands for.
-        if matches!(flat.pass.kind, PassKind::Arguments { .. }) && p + 1 < lowering.flat.len() {
-            sets.join(p, p + 1);
+        // Arguments are copied for one draw, to a place that no name stands for.
+        match &flat.pass.kind {
+            PassKind::Arguments { slot, .. } => _ = copied.insert(*slot, p),
+            PassKind::Draw(draw) => {
+                if let Geometry::Indirect { slot, .. } = &draw.geometry
+                    && let Some(copy) = copied.get(slot)
+                {
+                    sets.join(*copy, p);
+                }
+            }
+            _ => {}
         }
     }
     let mut producers: Vec<Vec<usize>> = vec![Vec::new(); lowering.flat.len()];

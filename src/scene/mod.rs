@@ -5,6 +5,7 @@
 
 pub mod camera;
 pub mod convert;
+pub mod cube;
 pub mod edit;
 pub mod framing;
 pub mod image;
@@ -13,8 +14,10 @@ mod model;
 pub mod particles;
 mod pointer;
 mod read;
+pub mod sequence;
+pub mod sun;
 
 pub use camera::{Camera, Light};
-pub use model::{Item, MeshEntry, ParticleSource, Playing, Scene, find};
+pub use model::{CubeFiles, Item, MeshEntry, ParticleSource, Playing, Scene, find};
 pub use pointer::{PointerPath, Pointing};
 pub use read::{DEFAULT_FOV_DEGREES, read};

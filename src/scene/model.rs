@@ -7,6 +7,7 @@ use glam::DMat4;
 
 use super::camera::{Camera, Light};
 use super::pointer::PointerPath;
+use super::sequence::Sequence;
 use crate::diagnostic::{FileId, Span};
 use crate::graph::value::Value;
 use crate::syntax::Sp;
@@ -30,6 +31,8 @@ pub struct Scene {
     pub meshes: Vec<Item<Vec<MeshEntry>>>,
     /// Pictures by the names of the inputs they feed; `environment:` is one of them.
     pub textures: Vec<Item<Sp<String>>>,
+    /// The environment, where it is a cube.
+    pub cube: Option<Item<CubeFiles>>,
     pub tables: Vec<Item<Vec<BTreeMap<String, Value>>>>,
     /// Values of the graph's parameters by instance path.
     pub params: Vec<Item<Value>>,
@@ -54,6 +57,28 @@ pub struct ParticleSource {
     pub file: Sp<String>,
     /// Metres; absent: the file's, else estimated.
     pub radius_m: Option<Sp<f64>>,
+    /// The file's name has a place for a number: one file for each frame.
+    pub sequence: Option<Sequence>,
+    /// Lowest and highest corner in metres, in place of those of the positions.
+    pub bounds: Option<[[f32; 3]; 2]>,
+}
+
+/// The files of a cube that is seen from inside.
+#[derive(Clone, Debug, PartialEq)]
+pub enum CubeFiles {
+    /// All faces in one picture, as a cross.
+    Cross(Sp<String>),
+    /// +x, -x, +y, -y, +z, -z.
+    Faces(Box<[Sp<String>; 6]>),
+}
+
+impl CubeFiles {
+    pub fn files(&self) -> &[Sp<String>] {
+        match self {
+            CubeFiles::Cross(file) => std::slice::from_ref(file),
+            CubeFiles::Faces(files) => &files[..],
+        }
+    }
 }
 
 /// A mesh file, put where it stands: one body, or as many as there are transforms.
@@ -105,9 +130,10 @@ impl Scene {
         let lights = self.lights.iter().map(|item| ("light", &item.name));
         let particles = self.particles.iter().map(|item| ("particles", &item.name));
         let textures = self.textures.iter().map(|item| ("texture", &item.name));
+        let cube = self.cube.iter().map(|item| ("texture", &item.name));
         let tables = self.tables.iter().map(|item| ("table", &item.name));
         let meshes = self.meshes.iter().map(|item| ("meshes", &item.name));
         let pointers = self.pointers.iter().map(|item| ("pointer", &item.name));
-        lights.chain(pointers).chain(particles).chain(meshes).chain(textures).chain(tables).collect()
+        lights.chain(pointers).chain(particles).chain(meshes).chain(textures).chain(cube).chain(tables).collect()
     }
 }

@@ -1,6 +1,8 @@
 //! Scene files from RON. All mistakes of a file are reported at once; what could be read stands.
 
 mod bodies;
+mod environment;
+mod sources;
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -8,7 +10,7 @@ use std::path::Path;
 use glam::DVec3;
 
 use super::camera::{Camera, Light};
-use super::model::{Item, ParticleSource, Scene};
+use super::model::{Item, Scene};
 use super::pointer::{PointerPath, Pointing};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics, Sources, Span};
 use crate::graph::value::Value;
@@ -62,6 +64,7 @@ pub fn read(path: &Path, bytes: &[u8], sources: &mut Sources, diagnostics: &mut 
         particles: reader.items(&fields, "particles", Reader::particles),
         meshes: reader.items(&fields, "meshes", Reader::bodies),
         textures: reader.textures(&fields),
+        cube: reader.cube(&fields),
         tables: reader.items(&fields, "tables", Reader::table),
         params: reader.items(&fields, "params", Reader::value),
         present: reader.items(&fields, "present", Reader::value),
@@ -104,10 +107,11 @@ impl Reader<'_> {
         items
     }
 
-    /// Pictures; the environment is one of them.
+    /// Pictures; the environment is one of them, unless it is a cube.
     fn textures(&mut self, fields: &Fields<'_>) -> Vec<Item<Sp<String>>> {
         let mut textures = self.items(fields, "textures", Reader::file_name);
         if let Some((name, node)) = fields.entry("environment")
+            && node.as_tagged().is_none()
             && let Some(file) = self.file_name(node, "`environment`")
         {
             textures.push(Item { name: name.clone(), value: file, span: node.span });
@@ -141,8 +145,11 @@ impl Reader<'_> {
     }
 
     fn light(&mut self, node: &Node, what: &str) -> Option<Light> {
+        if node.as_tagged().and_then(|t| t.name.as_ref()).is_some_and(|word| word.value == "Sun") {
+            return self.sun(node);
+        }
         let fields = self.decoder.fields(node, "`Light`", &["direction", "color", "intensity"])?;
-        self.word(node, "Light", what);
+        self.words(node, &["Light", "Sun"], what);
         let direction = fields.require(&mut self.decoder, "direction");
         let direction = direction.and_then(|n| self.decoder.floats::<3>(n, "`direction`"));
         let color = match fields.get("color") {
@@ -188,24 +195,6 @@ impl Reader<'_> {
         let key = Pointing { time_s: time_s?, origin, direction: at - origin, is_pressed };
         self.sound(key.fault(), node.span)?;
         Some(key)
-    }
-
-    /// `"file"` or `(file: "file", radius: 0.025)`.
-    fn particles(&mut self, node: &Node, what: &str) -> Option<ParticleSource> {
-        if node.as_str().is_some() {
-            return Some(ParticleSource { file: self.file_name(node, what)?, radius_m: None });
-        }
-        let fields = self.decoder.fields(node, "`Particles`", &["file", "radius"])?;
-        self.word(node, "Particles", what);
-        let file = fields.require(&mut self.decoder, "file").and_then(|n| self.file_name(n, "`file`"));
-        let radius_m = match fields.get("radius") {
-            Some(n) => Some(Sp { value: self.decoder.float(n, "`radius`")?, span: n.span }),
-            None => None,
-        };
-        if let Some(radius) = radius_m.as_ref().filter(|r| r.value <= 0.0) {
-            self.sound(Some("a radius must be above 0"), radius.span)?;
-        }
-        Some(ParticleSource { file: file?, radius_m })
     }
 
     /// Rows, each `(name: value, ...)` or `{"name": value, ...}`.
@@ -277,9 +266,13 @@ impl Reader<'_> {
 
     /// The word before a bracket may be left out, but must not be another.
     fn word(&mut self, node: &Node, expected: &str, what: &str) {
+        self.words(node, &[expected], what);
+    }
+
+    fn words(&mut self, node: &Node, expected: &[&str], what: &str) {
         let word = node.as_tagged().and_then(|t| t.name.as_ref());
-        if let Some(word) = word.filter(|word| word.value != expected) {
-            self.decoder.unknown_word(word, what, &[expected]);
+        if let Some(word) = word.filter(|word| !expected.contains(&word.value.as_str())) {
+            self.decoder.unknown_word(word, what, expected);
         }
     }
 

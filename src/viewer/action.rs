@@ -23,12 +23,21 @@ pub enum Action {
     /// Puts the camera into the scene file.
     SaveCamera,
     Camera(Camera),
+    /// Keeps the camera as a viewpoint of this number.
+    Keep(u8),
+    /// Goes to a kept viewpoint.
+    GoTo(u8),
     /// Looks at all of the content from where the camera stands.
     Frame,
     /// The scene's own camera.
     Home,
     /// All state as at the start.
     Restart,
+    /// Points at a place in the picture, from -1 to 1 to the right and up.
+    Point {
+        at: [f64; 2],
+        is_pressed: bool,
+    },
     /// Reads everything again.
     Reload,
     Play(bool),

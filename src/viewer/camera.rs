@@ -70,6 +70,13 @@ pub fn frame(camera: &Camera, low: DVec3, high: DVec3, viewport: [u32; 2]) -> Ca
     Camera { eye: middle - forward * distance, target: middle, ..*camera }
 }
 
+/// The way from the eye through a place in the picture, from -1 to 1 to the right and up.
+pub fn ray(camera: &Camera, at: [f64; 2], viewport: [u32; 2]) -> DVec3 {
+    let [x, y, forward] = axes(camera);
+    let [tan_x, tan_y] = camera.tan_half_fov(viewport);
+    (forward + x * (at[0] * tan_x) + y * (at[1] * tan_y)).normalize()
+}
+
 /// Right, up and forward.
 fn axes(camera: &Camera) -> [DVec3; 3] {
     let view = camera.view_from_world();
@@ -145,6 +152,14 @@ mod tests {
             }
         }
         assert_eq!(frame(&camera(), DVec3::ONE, DVec3::ONE, [8, 8]).fault(), None);
+    }
+
+    #[test]
+    fn a_ray_meets_what_is_seen_at_its_place() {
+        let (camera, size) = (camera(), [800, 600]);
+        let point = DVec3::new(0.8, 0.2, -0.3);
+        let way = ray(&camera, seen(&camera, point, size), size);
+        assert!((point - camera.eye).normalize().distance(way) < 1e-9);
     }
 
     #[test]

@@ -15,13 +15,14 @@ use super::editor;
 use super::look::Look;
 use super::params::{self, groups};
 use super::state::{Findings, Reload, State, bounds, listed, short};
+use super::viewpoints;
 use super::worker::{Cause, Round, Wants, Worker};
-use crate::diagnostic::{Diagnostic, Diagnostics, Severity, Sources};
+use crate::diagnostic::{Code, Diagnostic, Diagnostics, Severity, Sources};
 use crate::engine::{Gpu, Screen, any_device_gone};
 use crate::graph::value::Value;
-use crate::host::{Built, Content, Job, Live, Session};
+use crate::host::{Built, Content, Input, Job, Live, Session};
 use crate::plan::model::Plan;
-use crate::scene::Camera;
+use crate::scene::{Camera, Pointing};
 
 pub use look::Hunt;
 pub use record::{Recording, free_name};
@@ -32,6 +33,9 @@ const RESIZE_REST: Duration = Duration::from_millis(120);
 const POLL: Duration = Duration::from_millis(2);
 /// Steps of simulations that run in one frame while time plays, and while it catches up.
 const MOST_STEPS: [u32; 2] = [4, 32];
+
+/// A frame that takes longer is told.
+const LONG_S: u64 = 10;
 
 /// What is asked of the event loop after a [`Core::tick`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -70,6 +74,8 @@ pub struct Core {
     sources: Sources,
     wants: Wants,
     sent: Wants,
+    /// What is opened once the size is known.
+    opening: Option<Job>,
     /// When the wanted size changed last.
     resized: Option<Instant>,
     made: Option<Made>,
@@ -90,6 +96,8 @@ pub struct Core {
     is_part: bool,
     /// The next frame runs passes whose results are there already, too.
     run_all: bool,
+    /// That the worker is gone was told.
+    told_gone: bool,
     /// A picture that is to be written.
     shot: Option<std::path::PathBuf>,
 }
@@ -110,6 +118,7 @@ impl Core {
             sources: Sources::new(),
             wants: Wants::default(),
             sent: Wants::default(),
+            opening: None,
             resized: None,
             made: None,
             stepped_s: None,
@@ -123,6 +132,7 @@ impl Core {
             serial: 0,
             is_part: false,
             run_all: false,
+            told_gone: false,
             shot: None,
         };
         if let Some(job) = job {
@@ -148,6 +158,11 @@ impl Core {
         std::mem::take(&mut self.screen_changed)
     }
 
+    /// How often something was read back for looking at it.
+    pub fn reads(&self) -> u64 {
+        self.serial
+    }
+
     /// Whether a frame is being drawn.
     pub fn is_drawing(&self) -> bool {
         self.in_flight.is_some()
@@ -159,6 +174,7 @@ impl Core {
         self.state.switched_off.clear();
         (self.state.camera, self.state.home) = (None, None);
         (self.state.look, self.state.recording, self.state.hunt) = (None, None, None);
+        self.state.viewpoints = viewpoints::load(&job.source);
         self.state.clock = super::clock::Clock::default();
         self.reopen(job);
     }
@@ -167,7 +183,11 @@ impl Core {
     fn reopen(&mut self, job: Job) {
         self.state.busy = Some(Instant::now());
         self.state.job = Some(job.clone());
-        self.worker.open(job);
+        match self.wants.viewport {
+            Some(_) => self.worker.open(job),
+            // The size is known with the first paint: nothing is planned twice.
+            None => self.opening = Some(job),
+        }
     }
 
     /// The size that the picture should have, in pixels.
@@ -179,11 +199,21 @@ impl Core {
             self.resized = self.wants.viewport.map(|_| Instant::now());
             self.wants.viewport = wanted;
         }
+        if let Some(job) = self.opening.take() {
+            self.sent = self.wants.clone();
+            self.worker.want(self.wants.clone());
+            self.worker.open(job);
+        }
     }
 
     /// Takes news, lets time pass and draws, if there is anything to do.
     pub fn tick(&mut self, now: Instant) -> Tick {
         let mut tick = Tick::default();
+        if self.worker.is_gone() && !std::mem::replace(&mut self.told_gone, true) {
+            let failed =
+                Diagnostic::error(Code::USAGE, "the thread that reads files has failed: changes are no longer seen");
+            tick.repaint |= self.fail(failed.hint("open the window anew, and please report what led here").into());
+        }
         while let Some(round) = self.worker.take() {
             self.take(round);
             tick.repaint = true;
@@ -327,7 +357,13 @@ impl Core {
             return self.fail(gone.into());
         }
         if !in_flight.done.load(Ordering::Acquire) {
-            return false;
+            let seconds = in_flight.since.elapsed().as_secs();
+            let is_long = seconds >= LONG_S && seconds != self.state.waited_s;
+            if is_long {
+                self.state.waited_s = seconds;
+                self.state.say(format!("the device has been drawing for {seconds} s: a shader may loop for ever"));
+            }
+            return is_long;
         }
         let drawing_ms = in_flight.since.elapsed().as_secs_f64() * 1e3;
         self.in_flight = None;
@@ -436,6 +472,8 @@ impl Core {
         self.version += 1;
         self.state.memory_bytes = built.memory_bytes;
         self.state.changes_over_time = self.session.changes_over_time();
+        let mut inputs = self.session.content().into_iter().flat_map(|content| content.inputs.values());
+        self.state.takes_pointer = inputs.any(|input| matches!(input, Input::Pointer(_)));
         if let Some(plan) = self.session.plan() {
             self.state.viewport = plan.viewport;
             self.state.groups = groups(plan, self.session.present_plan());
@@ -471,6 +509,21 @@ impl Core {
                     self.state.say(why);
                 }
             }
+            Action::Point { at, is_pressed } => self.point(at, is_pressed),
+            Action::Keep(slot) => {
+                let Some(camera) = self.state.camera else { return };
+                self.state.viewpoints.insert(slot, camera);
+                let kept = self.state.job.as_ref().map(|job| viewpoints::save(&job.source, &self.state.viewpoints));
+                match kept {
+                    Some(Err(why)) => self.state.say(format!("the viewpoint is kept until you close: {why}")),
+                    _ => self.state.say(format!("viewpoint {slot} was kept")),
+                }
+            }
+            Action::GoTo(slot) => {
+                if let Some(camera) = self.state.viewpoints.get(&slot) {
+                    self.state.camera = Some(*camera);
+                }
+            }
             Action::RunAll(on) => {
                 self.state.runs_all = on;
                 self.version += 1;
@@ -504,7 +557,15 @@ impl Core {
         }
     }
 
+    /// A pointer of the graph is where a person points, from now on.
+    fn point(&mut self, at: [f64; 2], is_pressed: bool) {
+        let Some(camera) = self.state.camera else { return };
+        let direction = camera::ray(&camera, at, self.state.viewport);
+        self.session.point(Pointing { time_s: self.state.clock.time_s, origin: camera.eye, direction, is_pressed });
+    }
+
     fn restart(&mut self) {
+        self.session.forget_pointing();
         self.state.clock.seek(0.0);
         self.version += 1;
         self.stepped_s = None;

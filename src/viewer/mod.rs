@@ -7,19 +7,20 @@
 //! event loop. Only `app`, `painter` and `ui` know winit and egui, so that the rest is tested
 //! without a display.
 
-mod action;
+pub mod action;
 mod app;
 mod camera;
-mod clock;
+pub mod clock;
 pub mod core;
 mod editor;
-mod history;
+pub mod history;
 mod inspect;
-mod look;
+pub mod look;
 mod painter;
-mod params;
-mod state;
+pub mod params;
+pub mod state;
 mod ui;
+mod viewpoints;
 mod worker;
 
 use crate::diagnostic::Diagnostics;

@@ -32,11 +32,14 @@ pub struct State {
     pub in_scene: BTreeMap<String, Value>,
     pub clock: Clock,
     pub changes_over_time: bool,
+    /// The graph has an input for what a person points at.
+    pub takes_pointer: bool,
     pub camera: Option<Camera>,
     /// As the scene has it, or as the content is framed.
     pub home: Option<Camera>,
     /// The box around the content.
     pub bounds: Option<[DVec3; 2]>,
+    pub viewpoints: BTreeMap<u8, Camera>,
     /// Pixels of the picture that is shown.
     pub viewport: [u32; 2],
     pub memory_bytes: u64,
@@ -53,6 +56,8 @@ pub struct State {
     pub reloads: VecDeque<Reload>,
     /// Since when the worker has something to do.
     pub busy: Option<Instant>,
+    /// For how long a frame has been drawn, as it was told last.
+    pub waited_s: u64,
     /// A line for the person, with its time.
     pub notice: Option<(String, Instant)>,
     pub look: Option<Look>,

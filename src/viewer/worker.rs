@@ -113,6 +113,11 @@ impl Worker {
         self.rounds.try_recv().ok()
     }
 
+    /// Whether the thread has ended by a fault.
+    pub fn is_gone(&self) -> bool {
+        self.thread.as_ref().is_none_or(JoinHandle::is_finished)
+    }
+
     fn send(&self, order: Order) {
         if let Some(orders) = &self.orders {
             // A thread that is gone does nothing any more; the window still runs.

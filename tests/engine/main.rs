@@ -3,6 +3,7 @@
 
 mod compute;
 mod draw;
+mod embed;
 mod harness;
 mod lifecycle;
 mod meshes;
@@ -62,6 +63,13 @@ fn main() -> ExitCode {
         lifecycle::an_unknown_backend_is_told,
         lifecycle::poison_shows_holes,
         lifecycle::a_device_may_come_from_outside,
+        embed::frames_go_into_their_commands,
+        embed::dropped_commands_leave_no_trace,
+        embed::a_texture_of_theirs_is_checked,
+        embed::a_texture_that_they_destroy_is_told,
+        embed::two_graphs_do_not_write_one_texture,
+        embed::instances_share_pipelines_and_inputs,
+        embed::the_smallest_and_the_largest_sizes_work,
         meshes::bodies_stand_where_the_scene_says,
         meshes::fronts_stay_fronts,
         meshes::tags_and_values_and_computed_bodies,
@@ -73,5 +81,6 @@ fn main() -> ExitCode {
         meshes::what_does_not_fit_is_told,
         shipped::imai2016,
         shipped::imai2014,
+        shipped::iwasaki2006,
     ])
 }

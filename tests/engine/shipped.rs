@@ -143,7 +143,7 @@ fn picture_of(engine: &mut Engine, graph: &str) {
     if runner.plan().passes.iter().all(|p| !p.unordered) {
         assert!(pictures[0] == pictures[1], "no shader leaves holes, and the same frame is the same picture");
     }
-    let z = ["body.z", "z", "all.z"].iter().find_map(|n| runner.plan().names.get(*n).copied());
+    let z = ["body.z", "z", "all.z", "front.z"].iter().find_map(|n| runner.plan().names.get(*n).copied());
     if let Some(z) = z {
         let z = z.first_red(engine, &runner, VIEWPORT[1] / 2 * VIEWPORT[0] + VIEWPORT[0] / 2);
         // The foremost particle on the way from the eye to the middle, give or take what a surface smooths away.
@@ -156,6 +156,10 @@ fn picture_of(engine: &mut Engine, graph: &str) {
 
 pub fn imai2016(engine: &mut Engine) {
     picture_of(engine, "imai2016.ron");
+}
+
+pub fn iwasaki2006(engine: &mut Engine) {
+    picture_of(engine, "iwasaki2006.ron");
 }
 
 pub fn imai2014(engine: &mut Engine) {

@@ -26,6 +26,7 @@ pub fn new_plan() -> Plan {
         uniforms: Vec::new(),
         samplers: Vec::new(),
         passes: Vec::new(),
+        order: Order::default(),
         culled: Vec::new(),
         units: Vec::new(),
         rings: Vec::new(),

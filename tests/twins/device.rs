@@ -31,7 +31,7 @@ impl View {
         crate::ball::unit([across, up, -1.0])
     }
 
-    fn value(&self, name: &str) -> Option<Value> {
+    fn value(&self, name: &str, world_from_view: Mat4) -> Option<Value> {
         let aspect = self.size[0] as f32 / self.size[1] as f32;
         let clip_from_view = Mat4::from_cols(
             Vec4::new(1.0 / (self.tan * aspect), 0.0, 0.0, 0.0),
@@ -39,14 +39,13 @@ impl View {
             Vec4::new(0.0, 0.0, 0.0, -1.0),
             Vec4::new(0.0, 0.0, 0.01, 0.0),
         );
-        let world_from_view = Mat4::from_translation(glam::Vec3::new(0.0, 0.0, self.eye_z));
         let matrix = |m: Mat4| Value::vec(m.to_cols_array().map(f64::from));
         Some(match name {
             "camera.clip_from_world" => matrix(clip_from_view * world_from_view.inverse()),
             "camera.view_from_world" => matrix(world_from_view.inverse()),
             "camera.world_from_view" => matrix(world_from_view),
             "camera.clip_from_view" => matrix(clip_from_view),
-            "camera.position" => Value::vec([0.0, 0.0, f64::from(self.eye_z)]),
+            "camera.position" => Value::vec(world_from_view.w_axis.truncate().to_array().map(f64::from)),
             "camera.near" => Value::Float(0.01),
             "camera.viewport" => Value::vec(self.size.map(f64::from)),
             "camera.orthographic" => Value::Int(0),
@@ -81,7 +80,27 @@ pub fn bounds(positions: &[[f32; 3]]) -> ([f32; 3], [f32; 3]) {
     ([0, 1, 2].map(|k| over(f32::min, k)), [0, 1, 2].map(|k| over(f32::max, k)))
 }
 
+/// Irradiance of the light that [`run_lit`] gives, on what faces it.
+pub const SUN: [f64; 3] = [4.0, 3.6, 3.2];
+
 pub fn run<'a>(engine: &'a mut Engine, given: &Given<'_>) -> Done<'a> {
+    run_lit(engine, given, [0.0, -1.0, 0.0])
+}
+
+/// Where a view's eye is unless somebody says otherwise: on the z axis.
+fn on_axis(view: &View) -> Mat4 {
+    Mat4::from_translation(glam::Vec3::new(0.0, 0.0, view.eye_z))
+}
+
+/// Runs with the light `sun` going in a unit direction.
+pub fn run_lit<'a>(engine: &'a mut Engine, given: &Given<'_>, sun: [f64; 3]) -> Done<'a> {
+    let mut done = prepare(engine, given);
+    done.draw(given.view, on_axis(&given.view), sun);
+    done
+}
+
+/// A graph before its first frame.
+pub fn prepare<'a>(engine: &'a mut Engine, given: &Given<'_>) -> Done<'a> {
     let mut sources = Sources::new();
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(given.graph);
     let loaded = program::load(&DiskFiles, &mut sources, path.to_str().expect("a path in words"), None);
@@ -95,7 +114,11 @@ pub fn run<'a>(engine: &'a mut Engine, given: &Given<'_>) -> Done<'a> {
         max: max.map(f64::from),
         attributes: vec![("position".into(), 3)],
     };
-    let all = BTreeMap::from([("camera".to_owned(), InputInfo::Camera), ("particles".to_owned(), particles)]);
+    let all = BTreeMap::from([
+        ("camera".to_owned(), InputInfo::Camera),
+        ("particles".to_owned(), particles),
+        ("sun".to_owned(), InputInfo::Light),
+    ]);
     let asked = |name: &String| program.root.inputs.iter().any(|i| i.name.value == *name);
     let request = Request {
         viewport: given.view.size,
@@ -116,14 +139,23 @@ pub fn run<'a>(engine: &'a mut Engine, given: &Given<'_>) -> Done<'a> {
             runner.upload_buffer(engine, object, &bytes).unwrap_or_else(|d| panic!("{d:#?}"));
         }
     }
-    let live = |name: &str, _: Option<&StepInfo>| given.view.value(name);
-    let frame = Frame { time: 0.0, delta: 0.0, frame: 0, steps: &[], live: &live, only: None };
-    runner.run(engine, &frame).unwrap_or_else(|d| panic!("{d:#?}"));
-    runner.finish(engine).unwrap_or_else(|d| panic!("{d:#?}"));
     Done { engine, runner }
 }
 
 impl Done<'_> {
+    /// Runs a frame seen from anywhere; the eye looks along its own -z.
+    pub fn draw(&mut self, view: View, world_from_view: Mat4, sun: [f64; 3]) {
+        let live = |name: &str, _: Option<&StepInfo>| match name {
+            "sun.direction" => Some(Value::vec(sun)),
+            "sun.color" => Some(Value::vec(SUN.map(|x| x / 4.0))),
+            "sun.intensity" => Some(Value::Float(4.0)),
+            _ => view.value(name, world_from_view),
+        };
+        let frame = Frame { time: 0.0, delta: 0.0, frame: 0, steps: &[], live: &live, only: None };
+        self.runner.run(self.engine, &frame).unwrap_or_else(|d| panic!("{d:#?}"));
+        self.runner.finish(self.engine).unwrap_or_else(|d| panic!("{d:#?}"));
+    }
+
     /// A buffer's 32-bit words.
     pub fn words(&self, name: &str) -> Vec<u32> {
         let object = self.runner.plan().names[name];

@@ -3,10 +3,14 @@
 
 mod ball;
 mod device;
+mod field;
 mod grid;
 #[path = "../engine/harness.rs"]
 mod harness;
+mod holes;
+mod light;
 mod particles;
+mod points;
 mod pool;
 mod shapes;
 mod surfaces;
@@ -23,6 +27,8 @@ fn main() -> ExitCode {
         particles::ellipsoids_of_the_dam_break,
         particles::ellipsoids_of_third_parties,
         particles::ellipsoids_of_lone_and_heaped_particles,
+        particles::strays_are_small_groups,
+        particles::strays_do_not_depend_on_the_order_of_threads,
         pool::state_does_not_depend_on_the_pictures,
         pool::a_step_is_its_twin_in_64_bits,
         pool::waves_travel_at_the_speed_of_the_equation,
@@ -31,6 +37,15 @@ fn main() -> ExitCode {
         surfaces::a_splash_is_a_glass_ball,
         surfaces::tilted_planes_stay_planes,
         surfaces::noise_falls_more_than_by_the_bilateral_filter,
+        holes::no_holes_from_anywhere,
+        light::level_water_passes_the_flux,
+        light::waves_keep_the_light,
+        light::a_wave_focuses_as_a_lens_does,
+        light::light_from_below_lights_nothing,
+        points::densities_are_the_sums,
+        points::surfels_lie_on_the_surface,
+        points::layouts_agree,
+        points::no_particles_and_no_level,
         surfaces::rims_stay_where_they_are,
     ])
 }

@@ -26,7 +26,7 @@ fn scattered(count: usize, box_size: [f32; 3]) -> Vec<[f32; 3]> {
 }
 
 /// A particle file of the repository or of the data beside it; says so where it is not there.
-fn file(name: &str) -> Option<Vec<[f32; 3]>> {
+pub fn file(name: &str) -> Option<Vec<[f32; 3]>> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(name);
     let Ok(bytes) = std::fs::read(&path) else {
         eprintln!("skipped: {name} is not there");
@@ -127,6 +127,78 @@ fn shapes_agree(engine: &mut Engine, positions: &[[f32; 3]], radius: f64) {
         }
     }
     lists_are_complete(&done.words("body"), &done.words("splash"), &is_body);
+}
+
+/// Which particles are in groups of fewer than `below` that hang together, by comparing all with all.
+fn strays(positions: &[[f32; 3]], reach: f64, below: usize) -> Vec<bool> {
+    let neighbours = grid::neighbours(positions, reach);
+    let mut group = vec![usize::MAX; positions.len()];
+    let mut stray = vec![false; positions.len()];
+    for first in 0..positions.len() {
+        if group[first] != usize::MAX {
+            continue;
+        }
+        let mut members = vec![first];
+        group[first] = first;
+        let mut at = 0;
+        while at < members.len() {
+            for (other, _) in &neighbours[members[at]] {
+                if group[*other] == usize::MAX {
+                    group[*other] = first;
+                    members.push(*other);
+                }
+            }
+            at += 1;
+        }
+        members.iter().for_each(|i| stray[*i] = members.len() < below);
+    }
+    stray
+}
+
+/// Particles that are in neither list, after lists that leave out groups of fewer than `below`.
+fn left_out(engine: &mut Engine, positions: &[[f32; 3]], radius: f64, below: i64) -> Vec<bool> {
+    let params = &[("strays_below", Value::Int(below))];
+    let given = Given {
+        graph: "graphs/parts/ellipsoids.ron",
+        positions,
+        radius,
+        view: VIEW,
+        params,
+        read: &["body", "splash"],
+    };
+    let done = device::run(engine, &given);
+    let mut left_out = vec![true; positions.len()];
+    for list in [done.words("body"), done.words("splash")] {
+        let (count, items) = list.split_first().unwrap();
+        let items = &items[..*count as usize];
+        assert!(items.is_sorted(), "the lists keep the file's order");
+        items.iter().for_each(|i| assert!(std::mem::take(&mut left_out[*i as usize]), "{i} is listed twice"));
+    }
+    left_out
+}
+
+pub fn strays_are_small_groups(engine: &mut Engine) {
+    // Thin enough that there are groups of all sizes.
+    let positions = scattered(3_000, [1.0, 0.5, 0.8]);
+    let radius = 0.012;
+    for below in [1, 2, 7, 40] {
+        let expected = strays(&positions, 4.0 * radius, below as usize);
+        let count = expected.iter().filter(|stray| **stray).count();
+        assert_eq!(left_out(engine, &positions, radius, below), expected, "below {below}: {count}");
+        assert!(below == 1 || (0 < count && count < positions.len()), "below {below}: {count}");
+    }
+    let heaped = [vec![[0.5; 3]; 3_000], vec![[0.9, 0.5, 0.5]; 3]].concat();
+    let expected: Vec<bool> = (0..heaped.len()).map(|i| i >= 3_000).collect();
+    assert_eq!(left_out(engine, &heaped, 0.01, 4), expected, "a heap is one group");
+    assert_eq!(left_out(engine, &[], 0.01, 4), vec![false; 0]);
+}
+
+pub fn strays_do_not_depend_on_the_order_of_threads(engine: &mut Engine) {
+    let positions = scattered(40_000, [1.0; 3]);
+    let first = left_out(engine, &positions, 0.0045, 12);
+    for _ in 0..4 {
+        assert_eq!(left_out(engine, &positions, 0.0045, 12), first);
+    }
 }
 
 fn norm(matrix: &[[f64; 3]; 3]) -> f64 {

@@ -4,7 +4,14 @@
 use super::Encoding;
 use crate::plan::model::{ObjectRef, Pass};
 
-pub(super) fn encode(encoding: &mut Encoding<'_>, pass: &Pass, from: ObjectRef, offset: u64, indexed: bool, slot: u32) {
+pub(super) fn encode(
+    encoding: &mut Encoding<'_, '_>,
+    pass: &Pass,
+    from: ObjectRef,
+    offset: u64,
+    indexed: bool,
+    slot: u32,
+) {
     let Some(source) = encoding.pool.buffer(encoding.object(from)) else { return };
     let target = &encoding.fixed.arguments;
     let bytes = if indexed { 16 } else { 12 };

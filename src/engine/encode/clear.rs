@@ -8,7 +8,7 @@ use crate::engine::pipeline::Pipeline;
 use crate::plan::model::{Pass, View};
 
 pub(super) fn encode(
-    encoding: &mut Encoding<'_>,
+    encoding: &mut Encoding<'_, '_>,
     pass: &Pass,
     view: &View,
     pipeline: Option<&Pipeline>,
@@ -46,7 +46,7 @@ pub(super) fn encode(
 }
 
 fn color(
-    encoding: &mut Encoding<'_>,
+    encoding: &mut Encoding<'_, '_>,
     pass: &Pass,
     view: &wgpu::TextureView,
     value: wgt::Color,
@@ -67,7 +67,7 @@ fn color(
 }
 
 fn depth(
-    encoding: &mut Encoding<'_>,
+    encoding: &mut Encoding<'_, '_>,
     pass: &Pass,
     view: &wgpu::TextureView,
     (depth, stencil): (Option<f32>, Option<u32>),

@@ -5,7 +5,7 @@ use crate::engine::pipeline::Pipeline;
 use crate::plan::model::{Dispatch, Pass};
 
 pub(super) fn encode(
-    encoding: &mut Encoding<'_>,
+    encoding: &mut Encoding<'_, '_>,
     pass: &Pass,
     dispatch: &Dispatch,
     pipeline: Option<&Pipeline>,

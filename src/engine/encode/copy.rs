@@ -6,7 +6,7 @@ use super::Encoding;
 use crate::engine::pool::Memory;
 use crate::plan::model::{ObjectKind, Pass, View};
 
-pub(super) fn encode(encoding: &mut Encoding<'_>, pass: &Pass, from: &View, to: &View) {
+pub(super) fn encode(encoding: &mut Encoding<'_, '_>, pass: &Pass, from: &View, to: &View) {
     let (source, target) = (encoding.object(from.object), encoding.object(to.object));
     let (plan, pool) = (encoding.plan, encoding.pool);
     match (pool.memory(source), pool.memory(target)) {

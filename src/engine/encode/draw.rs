@@ -22,7 +22,7 @@ const MOST_TARGETS: usize = 8;
 
 /// Encodes draws that share their targets as one render pass: it loads as the first says, and
 /// resolves and stores for all.
-pub(in crate::engine) fn encode<'a>(encoding: &mut Encoding<'_>, parts: impl Iterator<Item = Part<'a>> + Clone) {
+pub(in crate::engine) fn encode<'a>(encoding: &mut Encoding<'_, '_>, parts: impl Iterator<Item = Part<'a>> + Clone) {
     let (Some(first), Some(last)) = (parts.clone().next(), parts.clone().last()) else { return };
     let count = parts.clone().count();
     let (timing, pair, named) = (encoding.timing, encoding.pair, encoding.recorder.named && count > 1);

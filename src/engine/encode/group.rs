@@ -19,7 +19,7 @@ impl Runner {
         &mut self,
         gpu: &Gpu,
         only: Option<&[bool]>,
-        recorder: &mut Recorder,
+        recorder: &mut Recorder<'_>,
         range: Range<usize>,
     ) -> Result<(), Diagnostic> {
         let mut at = range.start;
@@ -36,7 +36,7 @@ impl Runner {
         &mut self,
         gpu: &Gpu,
         only: Option<&[bool]>,
-        recorder: &mut Recorder,
+        recorder: &mut Recorder<'_>,
         group: Range<usize>,
     ) -> Result<(), Diagnostic> {
         let is_wanted = |index: &usize| only.is_none_or(|only| only.get(*index) != Some(&false));
@@ -56,7 +56,7 @@ impl Runner {
         Ok(())
     }
 
-    fn encode_one(&mut self, recorder: &mut Recorder, index: usize) {
+    fn encode_one(&mut self, recorder: &mut Recorder<'_>, index: usize) {
         let key = self.rotation_key(index);
         let Some(variant) = self.variants[index].get(&key) else { return };
         let is_timed = can_be_timed(variant, self.timing.times_encoders());
@@ -65,7 +65,7 @@ impl Runner {
         self.record(recorder, index, key, pair);
     }
 
-    fn encode_draws(&mut self, recorder: &mut Recorder, group: impl Iterator<Item = usize> + Clone) {
+    fn encode_draws(&mut self, recorder: &mut Recorder<'_>, group: impl Iterator<Item = usize> + Clone) {
         let mut first = None;
         for (nth, index) in group.clone().enumerate() {
             let pair = self.timing.mark(index, true, nth > 0);
@@ -82,7 +82,7 @@ impl Runner {
         Some(draw::Part { pass, draw, pipeline: self.pipelines[index].as_deref(), variant })
     }
 
-    fn encoding<'a>(&'a self, recorder: &'a mut Recorder, pair: Option<u32>) -> Encoding<'a> {
+    fn encoding<'a, 'b>(&'a self, recorder: &'a mut Recorder<'b>, pair: Option<u32>) -> Encoding<'a, 'b> {
         Encoding {
             recorder,
             plan: &self.plan,
@@ -95,7 +95,7 @@ impl Runner {
         }
     }
 
-    fn record(&self, recorder: &mut Recorder, index: usize, key: usize, pair: Option<u32>) {
+    fn record(&self, recorder: &mut Recorder<'_>, index: usize, key: usize, pair: Option<u32>) {
         let Some(variant) = self.variants[index].get(&key) else { return };
         let pipeline = self.pipelines[index].as_deref();
         self.encoding(recorder, pair).pass(&self.plan.passes[index], pipeline, variant);

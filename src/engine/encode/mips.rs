@@ -7,7 +7,7 @@ use crate::engine::mips::{MipInto, MipStep};
 use crate::engine::pipeline::Pipeline;
 use crate::plan::model::Pass;
 
-pub(super) fn encode(encoding: &mut Encoding<'_>, pass: &Pass, pipeline: Option<&Pipeline>, steps: &[MipStep]) {
+pub(super) fn encode(encoding: &mut Encoding<'_, '_>, pass: &Pass, pipeline: Option<&Pipeline>, steps: &[MipStep]) {
     for (at, step) in steps.iter().enumerate() {
         let (first, last) = (at == 0, at + 1 == steps.len());
         match &step.into {

@@ -21,8 +21,8 @@ use super::timing::Timing;
 use crate::plan::model::{ObjectId, ObjectRef, Pass, PassKind, Plan};
 
 /// A frame on its way into commands.
-pub(super) struct Encoding<'a> {
-    pub recorder: &'a mut Recorder,
+pub(super) struct Encoding<'a, 'b> {
+    pub recorder: &'a mut Recorder<'b>,
     pub plan: &'a Plan,
     pub pool: &'a Pool,
     pub fixed: &'a Fixed,
@@ -34,7 +34,7 @@ pub(super) struct Encoding<'a> {
     pub loads_are_free: bool,
 }
 
-impl Encoding<'_> {
+impl Encoding<'_, '_> {
     /// Encodes one pass.
     pub fn pass(&mut self, pass: &Pass, pipeline: Option<&Pipeline>, variant: &Variant) {
         match (&pass.kind, variant) {

@@ -15,9 +15,26 @@ const PASSES_TO_A_SUBMISSION: usize = 512;
 static NAMED: LazyLock<bool> =
     LazyLock::new(|| wgpu::InstanceFlags::from_env_or_default().contains(wgpu::InstanceFlags::DEBUG));
 
-pub(in crate::engine) struct Recorder {
-    encoder: wgpu::CommandEncoder,
+/// Whose encoder it is.
+enum Commands<'a> {
+    Own(wgpu::CommandEncoder),
+    /// An embedder's, who submits it.
+    Theirs(&'a mut wgpu::CommandEncoder),
+}
+
+impl Commands<'_> {
+    fn encoder(&mut self) -> &mut wgpu::CommandEncoder {
+        match self {
+            Commands::Own(encoder) => encoder,
+            Commands::Theirs(encoder) => encoder,
+        }
+    }
+}
+
+pub(in crate::engine) struct Recorder<'a> {
+    /// Before the encoder, so that it ends first.
     compute: Option<wgpu::ComputePass<'static>>,
+    commands: Commands<'a>,
     pub named: bool,
     passes: usize,
     begun: Begun,
@@ -32,17 +49,24 @@ pub(in crate::engine) struct Begun {
     pub submit_ms: f64,
 }
 
-impl Recorder {
+impl<'a> Recorder<'a> {
     pub fn new(gpu: &Gpu) -> Self {
-        let label = Some("frame");
-        let encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor { label });
-        Self { encoder, compute: None, named: *NAMED, passes: 0, begun: Begun::default() }
+        Self::of(Commands::Own(own(gpu)))
+    }
+
+    /// Records into somebody else's commands.
+    pub fn within(encoder: &'a mut wgpu::CommandEncoder) -> Self {
+        Self::of(Commands::Theirs(encoder))
+    }
+
+    fn of(commands: Commands<'a>) -> Self {
+        Self { compute: None, commands, named: *NAMED, passes: 0, begun: Begun::default() }
     }
 
     /// For everything but dispatches: ends the compute pass that is open.
     pub fn encoder(&mut self) -> &mut wgpu::CommandEncoder {
         self.compute = None;
-        &mut self.encoder
+        self.commands.encoder()
     }
 
     /// Whether the next dispatch joins those before it.
@@ -52,41 +76,62 @@ impl Recorder {
 
     /// The compute pass that is open, or a new one.
     pub fn compute(&mut self, descriptor: &wgpu::ComputePassDescriptor<'_>) -> &mut wgpu::ComputePass<'static> {
-        let (encoder, begun) = (&mut self.encoder, &mut self.begun);
+        let (commands, begun) = (&mut self.commands, &mut self.begun);
         self.compute.get_or_insert_with(|| {
             begun.compute_passes += 1;
-            encoder.begin_compute_pass(descriptor).forget_lifetime()
+            commands.encoder().begin_compute_pass(descriptor).forget_lifetime()
         })
     }
 
     pub fn render(&mut self, descriptor: &wgpu::RenderPassDescriptor<'_>) -> wgpu::RenderPass<'_> {
         self.compute = None;
         self.begun.render_passes += 1;
-        self.encoder.begin_render_pass(descriptor)
+        self.commands.encoder().begin_render_pass(descriptor)
     }
 
-    /// Counts passes, and submits now and then.
+    /// Counts passes, and submits now and then what is its own.
     pub fn count(&mut self, gpu: &Gpu, passes: usize) {
         self.passes += passes;
-        if self.passes >= PASSES_TO_A_SUBMISSION {
-            let full = std::mem::replace(self, Self::new(gpu));
-            self.begun = full.submit(gpu);
+        if self.passes < PASSES_TO_A_SUBMISSION {
+            return;
+        }
+        self.compute = None;
+        if let Commands::Own(encoder) = &mut self.commands {
+            let full = std::mem::replace(encoder, own(gpu));
+            self.begun.submit(gpu, full);
+            self.passes = 0;
         }
     }
 
-    pub fn finish(mut self) -> wgpu::CommandBuffer {
+    /// The commands, if they are its own.
+    pub fn finish(mut self) -> Option<wgpu::CommandBuffer> {
         self.compute = None;
-        self.encoder.finish()
+        match self.commands {
+            Commands::Own(encoder) => Some(encoder.finish()),
+            Commands::Theirs(_) => None,
+        }
     }
 
-    /// Submits, and gives what all of the frame up to here began.
-    pub fn submit(self, gpu: &Gpu) -> Begun {
-        let mut begun = self.begun;
-        let commands = self.finish();
+    /// Submits what is its own, and gives what all of the frame up to here began.
+    pub fn end(mut self, gpu: &Gpu) -> Begun {
+        self.compute = None;
+        if let Commands::Own(encoder) = self.commands {
+            self.begun.submit(gpu, encoder);
+        }
+        self.begun
+    }
+}
+
+impl Begun {
+    fn submit(&mut self, gpu: &Gpu, encoder: wgpu::CommandEncoder) {
+        let commands = encoder.finish();
         let began = Instant::now();
         gpu.queue().submit([commands]);
-        begun.submissions += 1;
-        begun.submit_ms += began.elapsed().as_secs_f64() * 1e3;
-        begun
+        self.submissions += 1;
+        self.submit_ms += began.elapsed().as_secs_f64() * 1e3;
     }
+}
+
+fn own(gpu: &Gpu) -> wgpu::CommandEncoder {
+    gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("frame") })
 }

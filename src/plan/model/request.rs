@@ -23,6 +23,22 @@ pub struct Request {
     pub limits: Limits,
 }
 
+impl Request {
+    /// For a picture of this size on a device with these features and limits; parameters at their
+    /// defaults, and no input yet.
+    pub fn new(viewport: [u32; 2], features: Features, limits: Limits) -> Self {
+        Self {
+            viewport,
+            params: BTreeMap::new(),
+            inputs: BTreeMap::new(),
+            capacities: BTreeMap::new(),
+            roots: Vec::new(),
+            features,
+            limits,
+        }
+    }
+}
+
 /// What feeds an input, as far as planning needs it.
 #[derive(Clone, Debug, PartialEq)]
 pub enum InputInfo {

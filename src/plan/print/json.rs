@@ -12,6 +12,7 @@ use serde_json::{Value as Json, json};
 use crate::format;
 use crate::graph::value::Value;
 use crate::plan::memory;
+use crate::plan::merge::SharedKind;
 use crate::plan::model::{
     Access, Argument, ArgumentKind, Binding, Bound, Causes, Dispatch, Draw, Geometry, Object, ObjectKind, ObjectRef,
     Origin, Param, Pass, PassKind, Plan, ShaderUse, Slot, UniformValue, View,
@@ -33,6 +34,18 @@ fn value(plan: &Plan) -> Json {
         "viewport": plan.viewport,
         "passes": plan.passes.iter().map(|p| pass(plan, p)).collect::<Vec<_>>(),
         "culled": plan.culled.iter().map(|c| json!({ "path": c.path, "why": c.why })).collect::<Vec<_>>(),
+        "passes_of_device": super::rows::shared_passes(plan).iter().map(|s| json!({
+            "passes": range_of(&s.passes),
+            "kind": match s.kind {
+                SharedKind::Compute => "compute",
+                SharedKind::Render => "render",
+                SharedKind::Alone => "alone",
+            },
+        })).collect::<Vec<_>>(),
+        "moved": plan.order.moved.iter().map(|m| json!({ "passes": range_of(&m.passes), "before": m.before }))
+            .collect::<Vec<_>>(),
+        "folded_clears": plan.order.folded.iter().map(|f| json!({ "clear": f.clear, "into": f.into }))
+            .collect::<Vec<_>>(),
         "units": plan.units.iter().map(|u| json!({ "passes": u.passes, "causes": causes(&u.causes) })).collect::<Vec<_>>(),
         "resources": plan.objects.iter().enumerate().map(|(id, o)| resource(plan, id, o)).collect::<Vec<_>>(),
         "steps": plan.steps.iter().map(|s| json!({

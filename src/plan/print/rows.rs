@@ -6,6 +6,7 @@ use std::ops::Range;
 
 use super::describe;
 use crate::plan::memory;
+use crate::plan::merge::{self, Shared};
 use crate::plan::model::{Access, ObjectId, ObjectKind, ObjectRef, Pass, Plan};
 
 /// Loop bodies of more passes are shown pass by pass.
@@ -164,6 +165,15 @@ pub fn sides(plan: &Plan, row: &Row, read: bool) -> Vec<String> {
 pub fn what(plan: &Plan, row: &Row) -> String {
     let text = describe::pass(&plan.passes[row.first]);
     if row.times > 1 { format!("{text}, {} times", row.times) } else { text }
+}
+
+/// The passes of the device, under the keeping policy.
+pub fn shared_passes(plan: &Plan) -> Vec<Shared> {
+    let mut first: Vec<ObjectId> = (0..plan.objects.len()).collect();
+    for slot in &plan.memory.keep {
+        slot.objects.iter().for_each(|id| first[*id] = slot.objects[0]);
+    }
+    merge::shared(plan, &|id| first[id])
 }
 
 /// For each object the label of the memory that it shares under the keeping policy.

@@ -7,6 +7,7 @@ use super::describe;
 use super::rows::{self, Row, rows, shared};
 use crate::graph::value::Value;
 use crate::plan::memory::total;
+use crate::plan::merge::{Shared, SharedKind};
 use crate::plan::model::{Causes, ObjectId, Origin, Plan};
 use crate::plan::needs::feature_names;
 
@@ -19,6 +20,7 @@ pub fn text(plan: &Plan) -> String {
     let [w, h] = plan.viewport;
     _ = writeln!(out, "plan of {} at {w} x {h}\n", plan.graph.display());
     passes(plan, &mut out);
+    order(plan, &mut out);
     units(plan, &mut out);
     steps(plan, &mut out);
     resources(plan, &mut out);
@@ -31,11 +33,7 @@ pub fn text(plan: &Plan) -> String {
 
 fn passes(plan: &Plan, out: &mut String) {
     let culled = if plan.culled.is_empty() { String::new() } else { format!(", {} culled", plan.culled.len()) };
-    _ = writeln!(
-        out,
-        "passes: {} in program order{culled}; below each what it reads -> what it writes",
-        plan.passes.len()
-    );
+    _ = writeln!(out, "passes: {} in order{culled}; below each what it reads -> what it writes", plan.passes.len());
     let rows = rows(plan);
     let width = rows.iter().map(|row| rows::path(plan, row).len()).max().unwrap_or(0).min(WIDEST);
     for row in &rows {
@@ -67,6 +65,34 @@ fn pass(plan: &Plan, row: &Row, width: usize, out: &mut String) {
         if names.is_empty() { "nothing".to_owned() } else { names.join(", ") }
     };
     _ = writeln!(out, "               {} -> {}", side(true), side(false));
+}
+
+/// Which passes share one of the device's, and what that took.
+fn order(plan: &Plan, out: &mut String) {
+    let all = rows::shared_passes(plan);
+    let on_device = all.iter().filter(|s| s.kind != SharedKind::Alone).count();
+    let is_shared = |s: &&Shared| s.passes.len() > 1;
+    _ = writeln!(out, "passes of the device: {on_device}, if all run");
+    for shared in all.iter().filter(is_shared) {
+        let what = match shared.kind {
+            SharedKind::Compute => "share a compute pass: dispatches that follow each other",
+            _ => "share a render pass: they draw into the same targets",
+        };
+        _ = writeln!(out, "  {} {what}", ranges(&shared.passes.clone().collect::<Vec<_>>()));
+    }
+    for moved in &plan.order.moved {
+        let passes = ranges(&moved.passes.clone().collect::<Vec<_>>());
+        let before = &plan.passes[moved.before].path;
+        _ = writeln!(
+            out,
+            "  {passes} before {} ({before}), which the program has first: they touch nothing of it",
+            moved.before
+        );
+    }
+    for folded in &plan.order.folded {
+        _ = writeln!(out, "  the clear {} is how {} loads its target", folded.clear, folded.into);
+    }
+    out.push('\n');
 }
 
 fn units(plan: &Plan, out: &mut String) {

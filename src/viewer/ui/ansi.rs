@@ -49,12 +49,13 @@ fn colored(code: &str, before: Color32) -> Color32 {
                 before
             }
         }
-        "31" | "91" => Color32::from_rgb(244, 112, 104),
-        "32" | "92" => Color32::from_rgb(126, 205, 136),
-        "33" | "93" => Color32::from_rgb(232, 190, 96),
-        "34" | "94" => Color32::from_rgb(104, 168, 236),
-        "35" | "95" => Color32::from_rgb(206, 146, 226),
-        "36" | "96" => Color32::from_rgb(98, 200, 210),
+        // The last of `38;5;9` and its like names a bright colour.
+        "31" | "91" | "9" => Color32::from_rgb(244, 112, 104),
+        "32" | "92" | "10" => Color32::from_rgb(126, 205, 136),
+        "33" | "93" | "11" => Color32::from_rgb(232, 190, 96),
+        "34" | "94" | "12" => Color32::from_rgb(104, 168, 236),
+        "35" | "95" | "13" => Color32::from_rgb(206, 146, 226),
+        "36" | "96" | "14" => Color32::from_rgb(98, 200, 210),
         _ => before,
     }
 }

@@ -81,7 +81,6 @@ pub struct Layout {
     pub middle: Middle,
     pub resource: resource::View,
     pub capture: capture::Form,
-    pub viewpoints: Vec<Option<crate::scene::Camera>>,
     /// Physical pixels that the picture has on the screen.
     room: Option<[f32; 2]>,
     scenes: Option<Vec<std::path::PathBuf>>,
@@ -100,7 +99,6 @@ impl Layout {
             middle: Middle::Picture,
             resource: resource::View::default(),
             capture: capture::Form::default(),
-            viewpoints: vec![None; 9],
             room: None,
             scenes: None,
         }

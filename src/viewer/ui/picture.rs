@@ -40,7 +40,11 @@ pub fn draw(
     if response.clicked() || response.drag_started() {
         response.request_focus();
     }
-    if let Some(before) = core.state.camera {
+    let points = core.state.takes_pointer && ui.input(|i| i.modifiers.alt);
+    if points {
+        point(&response, fit(core.state.viewport, room), actions);
+    }
+    if let Some(before) = core.state.camera.filter(|_| !points) {
         let moved = by_mouse(ui, &response, by_keys(ui, before), room);
         if moved != before {
             actions.push(Action::Camera(moved));
@@ -53,6 +57,15 @@ pub fn fit(viewport: [u32; 2], room: Rect) -> Rect {
     let [width, height] = viewport.map(|side| side.max(1) as f32);
     let scale = (room.width() / width).min(room.height() / height);
     Rect::from_center_size(room.center(), egui::vec2(width * scale, height * scale))
+}
+
+/// Alt and drag is for graphs that take a pointer.
+fn point(response: &egui::Response, place: Rect, actions: &mut Vec<Action>) {
+    if let Some(at) = response.interact_pointer_pos().filter(|_| response.dragged() || response.drag_stopped()) {
+        let part = (at - place.center()) / (place.size() * 0.5);
+        let at = [f64::from(part.x), f64::from(-part.y)];
+        actions.push(Action::Point { at, is_pressed: response.dragged() });
+    }
 }
 
 fn by_mouse(ui: &Ui, response: &egui::Response, camera: Camera, room: Rect) -> Camera {
@@ -121,11 +134,8 @@ pub fn keys(ui: &Ui, core: &Core, layout: &mut Layout, actions: &mut Vec<Action>
             if !i.key_pressed(key) {
                 continue;
             }
-            match (i.modifiers.command, layout.viewpoints.get_mut(slot)) {
-                (true, Some(place)) => *place = core.state.camera,
-                (false, Some(Some(camera))) => actions.push(Action::Camera(*camera)),
-                _ => {}
-            }
+            let slot = slot as u8 + 1;
+            actions.push(if i.modifiers.command { Action::Keep(slot) } else { Action::GoTo(slot) });
         }
         if i.modifiers.command && i.key_pressed(Key::S) {
             actions.push(Action::SaveParams);

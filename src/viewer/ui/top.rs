@@ -27,7 +27,7 @@ pub fn draw(ui: &mut Ui, core: &Core, layout: &mut Layout, actions: &mut Vec<Act
             if ui.button("Home").on_hover_text("the scene's own camera (H)").clicked() {
                 actions.push(Action::Home);
             }
-            viewpoints(ui, core, layout, actions);
+            viewpoints(ui, core, actions);
             ui.separator();
             ComboBox::from_id_salt("scale").selected_text(layout.scale.name()).width(96.0).show_ui(ui, |ui| {
                 for scale in Scale::ALL {
@@ -51,19 +51,17 @@ pub fn draw(ui: &mut Ui, core: &Core, layout: &mut Layout, actions: &mut Vec<Act
     });
 }
 
-fn viewpoints(ui: &mut Ui, core: &Core, layout: &mut Layout, actions: &mut Vec<Action>) {
+fn viewpoints(ui: &mut Ui, core: &Core, actions: &mut Vec<Action>) {
     ui.menu_button("Views", |ui| {
-        for (slot, place) in layout.viewpoints.iter_mut().enumerate() {
-            let number = slot + 1;
+        for slot in 1..=9 {
             ui.horizontal(|ui| {
-                let go = ui.add_enabled(place.is_some(), egui::Button::new(format!("go to {number}")));
-                if go.clicked()
-                    && let Some(camera) = place
-                {
-                    actions.push(Action::Camera(*camera));
+                let is_there = core.state.viewpoints.contains_key(&slot);
+                let go = ui.add_enabled(is_there, egui::Button::new(format!("go to {slot}")));
+                if go.on_hover_text(format!("{slot}")).clicked() {
+                    actions.push(Action::GoTo(slot));
                 }
-                if ui.button("keep here").on_hover_text(format!("Ctrl + {number}")).clicked() {
-                    *place = core.state.camera;
+                if ui.button("keep here").on_hover_text(format!("Ctrl + {slot}")).clicked() {
+                    actions.push(Action::Keep(slot));
                 }
             });
         }

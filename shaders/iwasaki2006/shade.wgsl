@@ -1,0 +1,72 @@
+// The water's picture: reflection of the environment, refraction into the lit pool, absorption on the way (Iwasaki et
+// al. 2006, section 5.3).
+#import "lib/camera.wgsl"
+#import "lib/optics.wgsl"
+#import "lib/pool.wgsl"
+
+var water_z: texture_2d<f32>;
+var water_normal: texture_2d<f32>;
+var dry_color: texture_2d<f32>;
+var dry_z: texture_2d<f32>;
+var sky_cube: texture_cube<f32>;
+/// 1 where the eye is outside, -1 under water.
+var<storage, read> eye: array<f32>;
+
+/// What a ray from a point meets: pool, ground or sky. `footprint_m` is the width that a pixel has at the point.
+fn met(p: vec3f, direction: vec3f, hit: PoolHit, footprint_m: f32) -> vec3f {
+    let sky = textureSampleLevel(sky_cube, linear_clamp, direction, 0.0).rgb;
+    if hit.kind == NOTHING {
+        return sky;
+    }
+    let slant = max(abs(dot(hit.normal, direction)), 0.1);
+    let color = pool_color(p + hit.t * direction, hit.normal, hit.kind, footprint_m / slant);
+    return color.rgb + (1.0 - color.a) * sky;
+}
+
+/// Light through a point of the surface, seen from outside; `footprint` is a pixel's width there.
+fn from_outside(p: vec3f, view: vec3f, facing: vec3f, footprint: f32) -> vec3f {
+    let reflectance = fresnel(clamp(-dot(view, facing), 0.0, 1.0), light_screen.ior);
+    let mirrored = reflect(view, facing);
+    let reflected = met(p, mirrored, pool_hit(p, mirrored), footprint);
+    let inner = bend_in(view, facing, light_screen.ior).direction;
+    let hit = pool_hit(p, inner);
+    let refracted = met(p, inner, hit, footprint) * transmitted(plane_stack.absorption, min(hit.t, 100.0));
+    return mix(refracted, reflected, reflectance);
+}
+
+/// The same from inside, where the surface may reflect everything; the way from the eye to it absorbs too.
+fn from_inside(p: vec3f, view: vec3f, facing: vec3f, footprint: f32, way_m: f32) -> vec3f {
+    let out = bend_out(view, facing, light_screen.ior);
+    let mirrored = reflect(view, facing);
+    let hit = pool_hit(p, mirrored);
+    let reflected = met(p, mirrored, hit, footprint) * transmitted(plane_stack.absorption, min(hit.t, 100.0));
+    var light = reflected;
+    if out.reflectance < 1.0 {
+        light = mix(met(p, out.direction, pool_hit(p, out.direction), footprint), reflected, out.reflectance);
+    }
+    return light * transmitted(plane_stack.absorption, way_m);
+}
+
+@fragment
+fn seen(@builtin(position) position: vec4f) -> @location(0) vec4f {
+    let texel = vec2i(position.xy);
+    let z = textureLoad(water_z, texel, 0).x;
+    let dry = textureLoad(dry_z, texel, 0).x;
+    let inside = eye[0] < 0.0;
+    let ray = normalize(eye_ray(position.xy).direction);
+    if z == 0.0 || (dry != 0.0 && dry > z) {
+        let way = select(0.0, dry / ray.z, inside);
+        return textureLoad(dry_color, texel, 0) * vec4f(transmitted(plane_stack.absorption, way), 1.0);
+    }
+    let p_in_view = eye_from_pixel(position.xy, z);
+    let p = (camera.world_from_view * vec4f(p_in_view, 1.0)).xyz;
+    let view = world_from_eye_vector(ray);
+    let normal = eye[0] * world_from_eye_vector(textureLoad(water_normal, texel, 0).xyz);
+    // A blended normal may face away at the rim.
+    let facing = normalize(normal - max(dot(normal, view) + 0.02, 0.0) * view);
+    let footprint = length(p_in_view) * 2.0 / (camera.viewport.y * abs(camera.clip_from_view[1][1]));
+    if inside {
+        return vec4f(from_inside(p, view, facing, footprint, length(p_in_view)), 1.0);
+    }
+    return vec4f(from_outside(p, view, facing, footprint), 1.0);
+}

@@ -1,0 +1,62 @@
+// Light under water between the sample planes (Iwasaki et al. 2006, section 5.1), for whatever lies there.
+#import "lib/harmonics.wgsl"
+#import "lib/light_screen.wgsl"
+
+struct Planes {
+    planes: u32,
+    absorption: vec3f,
+}
+
+var<uniform> plane_stack: Planes;
+var caustics: texture_2d_array<f32>;
+var surface: texture_2d<f32>;
+var<storage, read> ambient: array<vec4f>;
+var linear_clamp: sampler;
+
+/// The sun's light through a level square metre at a point; plain sun outside the planes' rectangle.
+fn light_on_level(p: vec3f) -> vec3f {
+    let uv = (p.xz - light_screen.region_min) / (light_screen.region_max - light_screen.region_min);
+    // Walls stand right on the rectangle.
+    if any(abs(uv - 0.5) > vec2f(0.5001)) || p.y > light_screen.top_m {
+        return irradiance(sun) * max(-sun.direction.y, 0.0);
+    }
+    let down = (light_screen.top_m - p.y) / (light_screen.top_m - light_screen.bottom_m);
+    let layer = clamp(down, 0.0, 1.0) * f32(plane_stack.planes - 1u);
+    let above = i32(layer);
+    let below = min(above + 1, i32(plane_stack.planes) - 1);
+    let upper = textureSampleLevel(caustics, linear_clamp, uv, above, 0.0).rgb;
+    let lower = textureSampleLevel(caustics, linear_clamp, uv, below, 0.0).rgb;
+    return mix(upper, lower, layer - f32(above));
+}
+
+/// Metres of water that the sun's light has behind it at a point, by the surface that the light met first.
+fn under_water_m(p: vec3f) -> f32 {
+    let uv = screen_uv(p);
+    if any(uv < vec2f(0.0)) || any(uv > vec2f(1.0)) {
+        return 0.0;
+    }
+    let water = textureLoad(surface, vec2i(uv * vec2f(textureDimensions(surface))), 0);
+    return select(max(screen_path(p) - water.w, 0.0), 0.0, dot(water.xyz, water.xyz) == 0.0);
+}
+
+fn sky_light(normal: vec3f) -> vec3f {
+    let basis = harmonics(normal);
+    var sum = vec3f(0.0);
+    for (var k = 0u; k < 9u; k++) {
+        sum += ambient[k].rgb * basis[k];
+    }
+    return max(sum, vec3f(0.0));
+}
+
+/// Light that a matt surface of albedo 1 sends back at a point with a normal: equation 2's receiver, the sun's share
+/// turned from the planes to the surface, and the ambient share L_a.
+fn lit(p: vec3f, normal: vec3f) -> vec3f {
+    let water_m = under_water_m(p);
+    let wet = water_m > 0.0;
+    let towards = -select(sun.direction, bent_sun(), wet);
+    let turned = max(dot(normal, towards), 0.0) / max(towards.y, 0.1);
+    // Water lets most of the sky's light in; it comes from above then.
+    let sky = select(sky_light(normal), 0.9 * mix(sky_light(normal), sky_light(vec3f(0.0, 1.0, 0.0)), 0.5), wet);
+    let sky_left = exp(-plane_stack.absorption * max(-sun.direction.y, 0.0) * water_m);
+    return (light_on_level(p) * turned + sky * sky_left) / 3.14159265;
+}

@@ -1,0 +1,107 @@
+// Each particle's discs of intersection with four grid planes, added up in four channels (Iwasaki et al. 2006, section
+// 4.2 and equation 1): `in_atlas` for all slabs at once, `in_slab` for one. Each slab has a tile of the target.
+#import "lib/kernel.wgsl"
+#import "lib/packed.wgsl"
+
+struct Params {
+    origin: vec3f,
+    spacing: f32,
+    reach_m: f32,
+    peak: f32,
+    columns: u32,
+    rows: u32,
+    kernel: u32,
+    // Tiles in a row, and how many there are.
+    tiles: u32,
+    held: u32,
+}
+
+struct Atlas {
+    slabs: u32,
+    slabs_met: u32,
+    clusters: u32,
+}
+
+struct Disc {
+    @builtin(position) clip: vec4f,
+    // The particle's place among the grid points, and the pixel at which these begin: apart, since a sum would be rounded.
+    @location(0) @interpolate(flat) middle: vec2f,
+    @location(2) @interpolate(flat) tile_corner: vec2f,
+    // Squared distances of the four planes, in effective radii.
+    @location(1) @interpolate(flat) away: vec4f,
+}
+
+const TABLE = 1u;
+
+var<uniform> params: Params;
+var<uniform> atlas_of: Atlas;
+var<uniform> slab: u32;
+var<storage, read> sorted: array<Packed3>;
+var<storage, read> slab_first: array<u32>;
+var<storage, read> cluster_start: array<u32>;
+var lookup: texture_2d<f32>;
+
+/// A quad around the particle's largest disc among a slab's planes, in the slab's tile; no area where none is met. The
+/// grid reaches beyond all discs, so that none leaves its tile.
+fn quad(p_m: vec3f, slab_index: u32, corner: u32) -> Disc {
+    let tile = slab_index % params.held;
+    let edges = vec2f(f32(params.columns), f32(params.rows));
+    let tile_corner = edges * vec2f(vec2u(tile % params.tiles, tile / params.tiles));
+    let size = edges * vec2f(vec2u(params.tiles, (params.held + params.tiles - 1u) / params.tiles));
+    let p = (p_m - params.origin) / params.spacing;
+    let reach = params.reach_m / params.spacing;
+    let planes = 4.0 * f32(slab_index) + vec4f(0.0, 1.0, 2.0, 3.0);
+    let away = (planes - p.y) / reach;
+    var out: Disc;
+    out.away = away * away;
+    let nearest = min(min(out.away.x, out.away.y), min(out.away.z, out.away.w));
+    // Half a cell more, for rounding.
+    let radius = select(reach * sqrt(max(1.0 - nearest, 0.0)) + 0.5, 0.0, nearest >= 1.0);
+    let side = vec2f(f32(corner & 1u), f32(corner >> 1u)) * 2.0 - 1.0;
+    // Grid point i lies in the middle of pixel i.
+    out.middle = p.xz;
+    out.tile_corner = tile_corner;
+    let ndc = (tile_corner + p.xz + 0.5 + radius * side) / size * 2.0 - 1.0;
+    out.clip = vec4f(ndc.x, -ndc.y, 0.5, 1.0);
+    return out;
+}
+
+@vertex
+fn in_slab(@builtin(vertex_index) corner: u32, @builtin(instance_index) instance: u32) -> Disc {
+    let p = unpack3(sorted[slab_first[slab] + instance]);
+    return quad(p, slab, corner);
+}
+
+/// Instances are (particle, slab) pairs: all slabs that a particle can meet, from the lowest.
+@vertex
+fn in_atlas(@builtin(vertex_index) corner: u32, @builtin(instance_index) instance: u32) -> Disc {
+    let i = instance / atlas_of.slabs_met;
+    let p = unpack3(sorted[i]);
+    let lowest = ceil((p.y - params.reach_m - params.origin.y) / params.spacing - 0.01);
+    let slab_index = u32(max(lowest, 0.0)) / 4u + instance % atlas_of.slabs_met;
+    var out = quad(p, slab_index, corner);
+    // What does not count stands behind the clusters.
+    if i >= cluster_start[atlas_of.clusters] || slab_index >= atlas_of.slabs {
+        out.clip = vec4f(2.0, 2.0, 0.5, 1.0);
+    }
+    return out;
+}
+
+/// The paper's lookup, with the mean of neighbouring texels done here: 32-bit floats need not be filterable.
+fn looked_up(a_2: f32) -> f32 {
+    let at = sqrt(min(a_2, 1.0)) * 1023.0;
+    let i = min(i32(at), 1022);
+    let low = textureLoad(lookup, vec2i(i, 0), 0).x;
+    let high = textureLoad(lookup, vec2i(i + 1, 0), 0).x;
+    return mix(low, high, at - f32(i));
+}
+
+@fragment
+fn density(in: Disc) -> @location(0) vec4f {
+    let beside = (floor(in.clip.xy) - in.tile_corner - in.middle) * (params.spacing / params.reach_m);
+    let a_2 = in.away + dot(beside, beside);
+    if params.kernel == TABLE {
+        return params.peak * vec4f(looked_up(a_2.x), looked_up(a_2.y), looked_up(a_2.z), looked_up(a_2.w));
+    }
+    return params.peak * vec4f(bracket(a_2.x), bracket(a_2.y), bracket(a_2.z), bracket(a_2.w));
+}
