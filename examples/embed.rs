@@ -95,10 +95,9 @@ impl Water {
         self.runner.as_mut().ok_or("nothing was prepared")
     }
 
-    /// The number of the object behind an input, and what it has to be.
+    /// The number of the object behind an input. What it has to be comes with it.
     fn input(&mut self, path: &str) -> Result<ObjectId, Box<dyn Error>> {
-        let (id, kind) = self.runner()?.plan().needs(path).ok_or_else(|| format!("the graph takes no `{path}`"))?;
-        println!("{path} is {kind:?}");
+        let (id, _) = self.runner()?.plan().needs(path).ok_or_else(|| format!("the graph takes no `{path}`"))?;
         Ok(id)
     }
 

@@ -273,6 +273,33 @@ fn transparent_pictures_have_coverage_and_exr_is_linear() {
     assert!(blue.into_iter().all(|ratio| (ratio - expected).abs() < 0.05), "the graph's own color, before any curve");
 }
 
+/// What a scene does not give, a graph may; what it gives wins.
+#[test]
+fn inputs_have_defaults() {
+    let project = Project::new();
+    project.edit("graphs/dots.ron", "\"sun\": Light", "\"sun\": Light(default: Light(direction: (1, -1, 0)))");
+    let scene = project.text("scenes/dots.ron");
+    let lines = scene.lines().filter(|line| !line.contains("\"sun\": Light"));
+    project.write("dark.ron", lines.collect::<Vec<_>>().join("\n"));
+    good(project.run(&["check", "--deny-warnings", "dark.ron", "scenes/dots.ron"]));
+    // What bears the name and is no light is still a mistake.
+    project.edit("dark.ron", "    particles: {", "    tables: {\"sun\": []},\n    particles: {");
+    refused(&project, &["check", "dark.ron"], 1, &["input `sun`", "is Light, and the scene's `sun` is not"]);
+    project.edit("dark.ron", "    tables: {\"sun\": []},\n", "");
+    if !has_adapter() {
+        return;
+    }
+    let drawn = |scene: &str, more: &[&str]| {
+        good(project.run(&[&["render", scene, "-o", "a.png", "--size", "80x60"], more].concat()));
+        std::fs::read(project.path("a.png")).unwrap()
+    };
+    let (lit, dark) = (drawn("scenes/dots.ron", &[]), drawn("dark.ron", &[]));
+    assert_ne!(lit, dark, "the scene's sun wins");
+    project.edit("graphs/dots.ron", "direction: (1, -1, 0)", "direction: (-1, -1, 0)");
+    assert_ne!(drawn("dark.ron", &[]), dark, "the default lights it");
+    assert_eq!(drawn("scenes/dots.ron", &[]), lit);
+}
+
 /// A graph with state moves on with time, and sees the scene's pointer and the command line's.
 #[test]
 fn a_new_graph_with_state_runs_and_sees_the_pointer() {
@@ -315,7 +342,7 @@ fn numbered_files_are_frames() {
     // Frame n has a row of n dots; there is no frame 4, and 6 is damaged.
     let row = |n: usize| format!("x,y,z\n{}", (0..n).map(|i| format!("{i},{n},0\n")).collect::<String>());
     for n in [2, 3, 5, 7] {
-        project.write(&format!("scenes/assets/row_{n:03}.csv"), &row(n));
+        project.write(&format!("scenes/assets/row_{n:03}.csv"), row(n));
     }
     project.write("scenes/assets/row_006.csv", "x,y,z\n1,2\n");
     project.edit("scenes/dots.ron", "assets/dots.csv", "assets/row_###.csv");

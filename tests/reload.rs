@@ -2,8 +2,12 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
+#[path = "support/follower.rs"]
+mod follower;
 #[path = "support/project.rs"]
 mod project;
+#[path = "reload/suite.rs"]
+mod suite;
 
 use std::io::{BufRead as _, BufReader};
 use std::process::{Child, Stdio};

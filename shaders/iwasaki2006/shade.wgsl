@@ -3,14 +3,45 @@
 #import "lib/camera.wgsl"
 #import "lib/optics.wgsl"
 #import "lib/pool.wgsl"
+#import "lib/slices.wgsl"
 
 var water_z: texture_2d<f32>;
 var water_normal: texture_2d<f32>;
 var dry_color: texture_2d<f32>;
 var dry_z: texture_2d<f32>;
+var slices: texture_2d_array<f32>;
+var slice_heights: texture_2d_array<f32>;
 var sky_cube: texture_cube<f32>;
 /// 1 where the eye is outside, -1 under water.
 var<storage, read> eye: array<f32>;
+
+/// The first mesh that a ray going down meets in the sliced object images: its light, and t; t is 0 where there is none.
+fn slice_hit(p: vec3f, direction: vec3f, reach: f32) -> vec4f {
+    if direction.y > -0.01 {
+        return vec4f(0.0);
+    }
+    let seen_along = slice_view(camera.position);
+    let last = plane_stack.planes - 1u;
+    let size = textureDimensions(slices).xy;
+    let spacing = (light_screen.top_m - light_screen.bottom_m) / f32(last);
+    let start = clamp((light_screen.top_m - p.y) / spacing, 0.0, f32(last - 1u));
+    for (var slice = u32(start); slice < last; slice++) {
+        // Across the slice the ray is taken to go along the direction from which the image is seen.
+        let upper = light_screen.top_m - spacing * f32(slice);
+        let t = (upper - 0.5 * spacing - p.y) / direction.y;
+        let uv = slice_uv(p + t * direction, seen_along, upper);
+        if any(uv <= vec2f(0.0)) || any(uv >= vec2f(1.0)) {
+            continue;
+        }
+        let texel = vec2u(uv * vec2f(size));
+        let color = textureSampleLevel(slices, linear_clamp, uv, slice, 0.0);
+        let t_hit = (textureLoad(slice_heights, texel, slice, 0).x - p.y) / direction.y;
+        if textureLoad(slices, texel, slice, 0).a > 0.0 && color.a > 0.5 && t_hit > 0.0 && t_hit < reach {
+            return vec4f(color.rgb / color.a, t_hit);
+        }
+    }
+    return vec4f(0.0);
+}
 
 /// What a ray from a point meets: pool, ground or sky. `footprint_m` is the width that a pixel has at the point.
 fn met(p: vec3f, direction: vec3f, hit: PoolHit, footprint_m: f32) -> vec3f {
@@ -23,14 +54,23 @@ fn met(p: vec3f, direction: vec3f, hit: PoolHit, footprint_m: f32) -> vec3f {
     return color.rgb + (1.0 - color.a) * sky;
 }
 
+/// The same under water: meshes too, and what the water takes on the way.
+fn met_in_water(p: vec3f, direction: vec3f, footprint_m: f32) -> vec3f {
+    let hit = pool_hit(p, direction);
+    let mesh = slice_hit(p, direction, hit.t);
+    if mesh.w > 0.0 {
+        return mesh.rgb * transmitted(plane_stack.absorption, mesh.w);
+    }
+    return met(p, direction, hit, footprint_m) * transmitted(plane_stack.absorption, min(hit.t, 100.0));
+}
+
 /// Light through a point of the surface, seen from outside; `footprint` is a pixel's width there.
 fn from_outside(p: vec3f, view: vec3f, facing: vec3f, footprint: f32) -> vec3f {
     let reflectance = fresnel(clamp(-dot(view, facing), 0.0, 1.0), light_screen.ior);
     let mirrored = reflect(view, facing);
     let reflected = met(p, mirrored, pool_hit(p, mirrored), footprint);
     let inner = bend_in(view, facing, light_screen.ior).direction;
-    let hit = pool_hit(p, inner);
-    let refracted = met(p, inner, hit, footprint) * transmitted(plane_stack.absorption, min(hit.t, 100.0));
+    let refracted = met_in_water(p, inner, footprint);
     return mix(refracted, reflected, reflectance);
 }
 
@@ -38,8 +78,7 @@ fn from_outside(p: vec3f, view: vec3f, facing: vec3f, footprint: f32) -> vec3f {
 fn from_inside(p: vec3f, view: vec3f, facing: vec3f, footprint: f32, way_m: f32) -> vec3f {
     let out = bend_out(view, facing, light_screen.ior);
     let mirrored = reflect(view, facing);
-    let hit = pool_hit(p, mirrored);
-    let reflected = met(p, mirrored, hit, footprint) * transmitted(plane_stack.absorption, min(hit.t, 100.0));
+    let reflected = met_in_water(p, mirrored, footprint);
     var light = reflected;
     if out.reflectance < 1.0 {
         light = mix(met(p, out.direction, pool_hit(p, out.direction), footprint), reflected, out.reflectance);

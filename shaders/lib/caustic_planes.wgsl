@@ -1,6 +1,7 @@
 // Light under water between the sample planes (Iwasaki et al. 2006, section 5.1), for whatever lies there.
 #import "lib/harmonics.wgsl"
 #import "lib/light_screen.wgsl"
+#import "lib/mesh_shadow.wgsl"
 
 struct Planes {
     planes: u32,
@@ -11,7 +12,9 @@ var<uniform> plane_stack: Planes;
 var caustics: texture_2d_array<f32>;
 var surface: texture_2d<f32>;
 var<storage, read> ambient: array<vec4f>;
+var mesh_heights: texture_depth_2d;
 var linear_clamp: sampler;
+var depth_compare: sampler_comparison;
 
 /// The sun's light through a level square metre at a point; plain sun outside the planes' rectangle.
 fn light_on_level(p: vec3f) -> vec3f {
@@ -39,6 +42,18 @@ fn under_water_m(p: vec3f) -> f32 {
     return select(max(screen_path(p) - water.w, 0.0), 0.0, dot(water.xyz, water.xyz) == 0.0);
 }
 
+/// Share of the sun's light that meshes let through to a point.
+fn past_meshes(p: vec3f) -> f32 {
+    let place = shadow_place(p);
+    let texel = 1.0 / vec2f(textureDimensions(mesh_heights));
+    var open = 0.0;
+    for (var k = 0; k < 9; k++) {
+        let uv = place.xy + vec2f(vec2i(k % 3, k / 3) - 1) * texel;
+        open += textureSampleCompareLevel(mesh_heights, depth_compare, uv, place.z + 0.004) / 9.0;
+    }
+    return select(1.0, open, all(abs(place.xy - 0.5) < vec2f(0.5)));
+}
+
 fn sky_light(normal: vec3f) -> vec3f {
     let basis = harmonics(normal);
     var sum = vec3f(0.0);
@@ -58,5 +73,5 @@ fn lit(p: vec3f, normal: vec3f) -> vec3f {
     // Water lets most of the sky's light in; it comes from above then.
     let sky = select(sky_light(normal), 0.9 * mix(sky_light(normal), sky_light(vec3f(0.0, 1.0, 0.0)), 0.5), wet);
     let sky_left = exp(-plane_stack.absorption * max(-sun.direction.y, 0.0) * water_m);
-    return (light_on_level(p) * turned + sky * sky_left) / 3.14159265;
+    return (light_on_level(p) * past_meshes(p) * turned + sky * sky_left) / 3.14159265;
 }

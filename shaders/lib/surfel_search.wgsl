@@ -57,7 +57,7 @@ fn crossing(f: vec4f) -> f32 {
     var low = 0.0;
     var high = 1.0;
     let low_inside = inside(f.y);
-    for (var k = 0; k < 12; k++) {
+    for (var k = 0; k < 16; k++) {
         let middle = 0.5 * (low + high);
         if inside(cubic(f, middle)) == low_inside {
             low = middle;

@@ -18,7 +18,7 @@ struct Params {
 
 struct Atlas {
     slabs: u32,
-    slabs_met: u32,
+    particles_count: u32,
     clusters: u32,
 }
 
@@ -72,13 +72,14 @@ fn in_slab(@builtin(vertex_index) corner: u32, @builtin(instance_index) instance
     return quad(p, slab, corner);
 }
 
-/// Instances are (particle, slab) pairs: all slabs that a particle can meet, from the lowest.
+/// Instances are all particles for the lowest slab that each meets, by height, then for the next one, and so on: what
+/// follows each other falls into one tile.
 @vertex
 fn in_atlas(@builtin(vertex_index) corner: u32, @builtin(instance_index) instance: u32) -> Disc {
-    let i = instance / atlas_of.slabs_met;
+    let i = instance % atlas_of.particles_count;
     let p = unpack3(sorted[i]);
     let lowest = ceil((p.y - params.reach_m - params.origin.y) / params.spacing - 0.01);
-    let slab_index = u32(max(lowest, 0.0)) / 4u + instance % atlas_of.slabs_met;
+    let slab_index = u32(max(lowest, 0.0)) / 4u + instance / atlas_of.particles_count;
     var out = quad(p, slab_index, corner);
     // What does not count stands behind the clusters.
     if i >= cluster_start[atlas_of.clusters] || slab_index >= atlas_of.slabs {

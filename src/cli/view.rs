@@ -1,7 +1,5 @@
 //! `meniscus view`: the window.
 
-use std::path::Path;
-
 use super::args::ViewArgs;
 use super::report::{Exit, report};
 use crate::diagnostic::{Diagnostics, Sources};
@@ -15,6 +13,8 @@ pub fn run(args: &ViewArgs) -> Exit {
 
 #[cfg(feature = "viewer")]
 fn view(args: &ViewArgs) -> Result<(), Diagnostics> {
+    use std::path::Path;
+
     use crate::files::DiskFiles;
     use crate::host::renderable;
     use crate::viewer::{Options, run};

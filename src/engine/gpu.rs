@@ -132,6 +132,11 @@ impl Gpu {
         Ok(gpu)
     }
 
+    /// The instance that it was opened on; an embedder's is not known.
+    pub(super) fn opened_on(&self) -> Option<&wgpu::Instance> {
+        self.instance.as_ref()
+    }
+
     /// Takes over a device that an embedder opened. Its callbacks for errors and for loss are
     /// replaced by the engine's.
     pub fn from_parts(adapter: Option<wgpu::Adapter>, device: wgpu::Device, queue: wgpu::Queue) -> Self {

@@ -9,6 +9,7 @@
 
 mod bind;
 mod carry;
+mod census;
 mod claims;
 mod clear;
 mod compile;
@@ -33,6 +34,7 @@ mod timing;
 mod uniform;
 mod upload;
 
+pub use census::Census;
 pub use compile::{Compiled, Compiler};
 pub use errors::{any_device_gone, is_device_gone};
 pub use gpu::{AdapterSummary, Gpu, GpuOptions, wanted_features};

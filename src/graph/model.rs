@@ -36,7 +36,21 @@ pub struct Input {
     pub name: Name,
     pub kind: InputKind,
     pub optional: bool,
+    /// What feeds it where a scene does not.
+    pub default: Option<InputDefault>,
     pub span: Span,
+}
+
+/// What feeds an input that nothing else does.
+#[derive(Clone, Debug, PartialEq)]
+pub enum InputDefault {
+    Light {
+        direction: [f64; 3],
+        color: [f64; 3],
+        intensity: f64,
+    },
+    /// One texel, linear.
+    Texture([f64; 4]),
 }
 
 #[derive(Clone, Debug)]

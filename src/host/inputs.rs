@@ -5,6 +5,8 @@ use std::ops::RangeInclusive;
 use std::path::PathBuf;
 use std::sync::Arc;
 
+use glam::DVec3;
+use half::f16;
 use wgpu_types::TextureUsages;
 
 use super::assets::{Asset, Cache, Particles, Pending, radius_m};
@@ -13,7 +15,7 @@ use super::models::{MeshFiles, Reading};
 use super::sequence::Track;
 use crate::diagnostic::{Code, Diagnostic, Diagnostics, Span};
 use crate::format::TextureFormat;
-use crate::graph::model::{Graph, Input as Declared, InputKind};
+use crate::graph::model::{Graph, Input as Declared, InputDefault, InputKind};
 use crate::graph::value::Value;
 use crate::plan::fields::{self, FieldType};
 use crate::plan::model::{InputInfo, Texture};
@@ -181,6 +183,9 @@ pub(super) fn connect(
         match offered(declared, scene, decoded) {
             Some(input) => _ = inputs.insert(name.clone(), input),
             None if decoded.failed.contains(name) => {}
+            None if declared.default.is_some() && !scene.items().iter().any(|(_, item)| item.value == *name) => {
+                inputs.extend(declared.default.as_ref().map(|default| (name.clone(), Input::of_default(default))));
+            }
             None => {
                 if let Some(problem) = missing(declared, graph, scene) {
                     diagnostics.push(problem);
@@ -263,6 +268,21 @@ pub(super) fn unused(scene: &Scene, takers: &[&Graph], diagnostics: &mut Diagnos
 }
 
 impl Input {
+    /// What a graph says of an input that nothing else feeds.
+    fn of_default(default: &InputDefault) -> Self {
+        match default {
+            InputDefault::Light { direction, color, intensity } => Input::Light(Light {
+                direction: DVec3::from_array(*direction),
+                color: DVec3::from_array(*color),
+                intensity: *intensity,
+            }),
+            InputDefault::Texture(color) => {
+                let texel = color.map(|channel| f16::from_f64(channel.clamp(-65504.0, 65504.0)));
+                Input::Image(Arc::new(Image { width: 1, height: 1, texels: vec![texel], clipped: 0 }))
+            }
+        }
+    }
+
     /// What planning needs to know of it.
     pub fn info(&self) -> InputInfo {
         match self {

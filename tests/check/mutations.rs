@@ -122,10 +122,18 @@ fn project() -> MemoryFiles {
     files
 }
 
+/// After this a file gets no more than [`FEWEST`] mutations: graphs of hundreds of passes take long without optimization.
+const ENOUGH: Duration = Duration::from_secs(3);
+const FEWEST: usize = 20;
+
 /// Checks mutations of one file until the number is reached.
 fn try_mutations(files: &MemoryFiles, changed: &Path, root: &str, count: usize, random: &mut Random) {
     let text = String::from_utf8(files.0[changed].to_vec()).unwrap();
-    for _ in 0..count {
+    let began = Instant::now();
+    for done in 0..count {
+        if done >= FEWEST && began.elapsed() > ENOUGH {
+            break;
+        }
         let mut mutated = mutate(&text, random);
         if random.below(3) == 0 && !tokens(&mutated).is_empty() {
             mutated = mutate(&mutated, random);

@@ -191,7 +191,7 @@ pub fn layouts_agree(engine: &mut Engine) {
     assert_eq!(atlas.len(), four.len());
     // Equal to rounding, so that equal places may have changed their order: each looks for its partner nearby.
     for (i, a) in atlas.iter().enumerate() {
-        let nearby = &four[i.saturating_sub(8)..four.len().min(i + 9)];
+        let nearby = &four[i.saturating_sub(64)..four.len().min(i + 65)];
         let partner = nearby.iter().any(|b| {
             let apart = [0, 1, 2].map(|k| a.position[k] - b.position[k]);
             ball::dot(apart, apart).sqrt() < 1.0e-4 * spacing && ball::dot(a.normal, b.normal) > 0.999_999

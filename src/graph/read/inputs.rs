@@ -1,5 +1,6 @@
 //! `inputs:`.
 
+use super::defaults;
 use super::params;
 use super::values::{Named, is_identifier, named, tagged};
 use crate::diagnostic::{Code, Diagnostic};
@@ -22,7 +23,8 @@ pub(super) fn input(d: &mut Decoder<'_>, entry: &Named<'_>) -> Option<Input> {
     let owner = format!("`{}`", word.value);
     let known: &[&str] = match word.value.as_str() {
         "Particles" => &["attributes", "optional"],
-        "Texture" => &["dimension", "optional"],
+        "Texture" => &["dimension", "optional", "default"],
+        "Light" => &["optional", "default"],
         "Meshes" => &["optional", "values"],
         kind if KINDS.contains(&kind) => &["optional"],
         _ => {
@@ -33,6 +35,12 @@ pub(super) fn input(d: &mut Decoder<'_>, entry: &Named<'_>) -> Option<Input> {
     let fields = d.body_fields(tag, &owner, known)?;
     let optional =
         fields.get("optional").and_then(|node| d.bool(node, &format!("`optional` of {owner}"))).unwrap_or(false);
+    let default = match word.value.as_str() {
+        "Light" => defaults::light(d, &fields),
+        "Texture" => defaults::texture(d, &fields),
+        _ => None,
+    };
+    defaults::not_optional(d, &fields);
     let kind = match word.value.as_str() {
         "Camera" => InputKind::Camera,
         "Light" => InputKind::Light,
@@ -44,7 +52,7 @@ pub(super) fn input(d: &mut Decoder<'_>, entry: &Named<'_>) -> Option<Input> {
         "Texture" => InputKind::Texture { dimension: dimension(d, &fields) },
         _ => InputKind::Meshes { values: values(d, &fields) },
     };
-    Some(Input { name: entry.name.clone(), kind, optional, span: entry.name.span.to(entry.node.span) })
+    Some(Input { name: entry.name.clone(), kind, optional, default, span: entry.name.span.to(entry.node.span) })
 }
 
 /// What each body has, declared as parameters are.

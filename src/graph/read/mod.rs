@@ -3,6 +3,7 @@
 //!
 //! What needs more than the one file (whether a name exists, sizes, shaders) is not judged here.
 
+mod defaults;
 mod draw;
 mod inputs;
 mod names;
