@@ -1,7 +1,7 @@
 // Floor and box in sun and sky light: premultiplied colour, the floor fading out with the distance.
+#import "dry_scene/skylight.wgsl"
+#import "dry_scene/sunlight.wgsl"
 #import "lib/camera.wgsl"
-#import "lib/harmonics.wgsl"
-#import "lib/light.wgsl"
 
 struct Params {
     floor: u32,
@@ -10,10 +10,6 @@ struct Params {
     middle: vec2f,
     tile_m: f32,
     floor_color: vec3f,
-    shadow: f32,
-    absorption: vec3f,
-    shadow_m: f32,
-    particles_radius: f32,
     box: u32,
     box_min: vec3f,
     box_max: vec3f,
@@ -30,10 +26,6 @@ struct Vertex {
 const FLOOR_VERTICES = 6u;
 
 var<uniform> params: Params;
-var<uniform> sun: Light;
-var<storage, read> ambient: array<vec4f>;
-var thickness: texture_2d<f32>;
-var linear_clamp: sampler;
 
 /// A corner of a square from -1 to 1: two triangles, six vertices.
 fn corner(index: u32) -> vec2f {
@@ -80,25 +72,6 @@ fn checker(at: vec2f) -> f32 {
     return 0.5 + 0.5 * wave.x * wave.y;
 }
 
-fn sky_irradiance(normal: vec3f) -> vec3f {
-    let basis = harmonics(normal);
-    var sum = vec3f(0.0);
-    for (var k = 0u; k < 9u; k++) {
-        sum += ambient[k].rgb * basis[k];
-    }
-    return max(sum, vec3f(0.0));
-}
-
-/// Share of the sun's light that comes through the water above a point of the floor.
-fn sunlight(at: vec2f) -> vec3f {
-    let uv = (at - params.middle) / params.shadow_m * 0.5 + 0.5;
-    let depth_m = textureSampleLevel(thickness, linear_clamp, uv, 0.0).x;
-    let covered = 1.0 - exp(-depth_m / (2.0 * params.particles_radius));
-    // Outside the picture lies no shadow.
-    let inside = select(0.0, 1.0, all(uv > vec2f(0.0)) && all(uv < vec2f(1.0)));
-    return mix(vec3f(1.0), (1.0 - params.shadow * covered) * exp(-params.absorption * depth_m), inside);
-}
-
 @fragment
 fn shade(in: Vertex) -> @location(0) vec4f {
     let square = checker(in.world.xz / params.tile_m);
@@ -109,10 +82,6 @@ fn shade(in: Vertex) -> @location(0) vec4f {
         let away = length(in.world.xz - params.middle) / params.floor_radius_m;
         alpha = 1.0 - smoothstep(0.35, 1.0, away);
     }
-    var direct = irradiance(sun) * max(dot(in.normal, -sun.direction), 0.0);
-    if in.is_box == 0u {
-        direct *= sunlight(in.world.xz);
-    }
-    let light = sky_irradiance(in.normal) + direct;
+    let light = sky_irradiance(in.normal) + from_sun(in.world, in.normal);
     return vec4f(albedo * light / 3.14159265 * alpha, alpha);
 }

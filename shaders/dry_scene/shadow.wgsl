@@ -1,5 +1,5 @@
-// Metres of liquid between the sun and the floor: each particle's volume spread over a disc, added up in a picture of
-// the floor seen along the sun's rays.
+// Metres of liquid along the sun's rays: each particle's volume spread over a disc, added up in a picture of the floor
+// seen along the rays. Green and blue add up that times its height, and its height squared.
 #import "lib/light.wgsl"
 #import "lib/packed.wgsl"
 
@@ -15,6 +15,8 @@ struct Vertex {
     @builtin(position) clip: vec4f,
     @location(0) at: vec2f,
     @location(1) @interpolate(flat) peak_m: f32,
+    // Above the floor, as a share of the picture's width, so that half floats hold its square.
+    @location(2) @interpolate(flat) height: f32,
 }
 
 var<uniform> params: Params;
@@ -36,10 +38,12 @@ fn disc(@builtin(vertex_index) corner: u32, @builtin(instance_index) instance: u
     let diameter = 2.0 * params.particles_radius;
     // The disc's profile (1 - d²) has half its peak as mean.
     out.peak_m = 2.0 * diameter * diameter * diameter / (3.14159265 * radius * radius);
+    out.height = (p.y - params.floor_m) / params.shadow_m;
     return out;
 }
 
 @fragment
 fn thickness(in: Vertex) -> @location(0) vec4f {
-    return vec4f(in.peak_m * max(1.0 - dot(in.at, in.at), 0.0));
+    let depth_m = in.peak_m * max(1.0 - dot(in.at, in.at), 0.0);
+    return vec4f(depth_m, depth_m * in.height, depth_m * in.height * in.height, 0.0);
 }

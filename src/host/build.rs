@@ -29,6 +29,8 @@ pub struct Session {
     pub(super) content: Option<Content>,
     /// Room that counted buffers turned out to need, by instance path.
     pub(super) capacities: BTreeMap<String, u64>,
+    /// The time in seconds at which moving meshes stand.
+    pub(super) moved_s: Option<f64>,
     /// What was pointed at while pictures were shown.
     pub(super) pointed: PointerPath,
 }
@@ -72,6 +74,7 @@ impl Session {
             present: None,
             content: None,
             capacities: BTreeMap::new(),
+            moved_s: None,
             pointed: PointerPath::default(),
         }
     }
@@ -145,6 +148,7 @@ impl Session {
             }
         };
         let before = self.content.take();
+        self.moved_s = None;
         let uploaded =
             upload(&self.engine, &mut graph, &content.inputs, before.as_ref().map(|c| &c.inputs)).and_then(|()| {
                 let before = before.as_ref().map(|c| &c.present_inputs);
@@ -415,7 +419,12 @@ pub(super) fn move_meshes(
     runner: &mut Runner,
     inputs: &BTreeMap<String, Input>,
     time_s: f64,
+    moved_s: &mut Option<f64>,
 ) -> Result<(), Diagnostic> {
+    // While time stands, nothing is new.
+    if moved_s.replace(time_s) == Some(time_s) {
+        return Ok(());
+    }
     for id in 0..runner.plan().objects.len() {
         let Origin::Mesh { input, buffer: MeshBuffer::Instances } = &runner.plan().objects[id].origin else { continue };
         if let Some(Input::Meshes(meshes)) = inputs.get(input)

@@ -87,7 +87,7 @@ impl Session {
         for frame in first..=moment.frame {
             let now = if frame == moment.frame { moment } else { Moment::at_frame(frame) };
             let steps = steps_until(runner.plan(), runner.steps_done(), now, first)?;
-            move_meshes(&self.engine, runner, &content.inputs, now.time_s)?;
+            move_meshes(&self.engine, runner, &content.inputs, now.time_s, &mut self.moved_s)?;
             let live = LiveValues::new(content, &content.inputs, &self.pointed, now.time_s);
             let frame = Frame {
                 time: now.time_s,

@@ -53,7 +53,7 @@ impl Session {
     pub fn submit(&mut self, live: &Live<'_>) -> Result<Report, Diagnostics> {
         let (Some(content), Some(runner)) = (&mut self.content, &mut self.graph) else { return Err(nothing().into()) };
         content.camera = live.camera;
-        move_meshes(&self.engine, runner, &content.inputs, live.time_s)?;
+        move_meshes(&self.engine, runner, &content.inputs, live.time_s, &mut self.moved_s)?;
         let values = LiveValues::new(content, &content.inputs, &self.pointed, live.time_s);
         let frame = Frame {
             time: live.time_s,

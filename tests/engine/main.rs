@@ -77,6 +77,8 @@ fn main() -> ExitCode {
         meshes::absent_meshes_are_no_bodies,
         meshes::materials_are_bound_by_name,
         meshes::animations_move_nodes,
+        meshes::an_even_sky_makes_white_things_as_bright_as_it,
+        meshes::meshes_cast_shadows_on_meshes,
         meshes::what_does_not_fit_is_told,
         distance::of_a_box,
         distance::of_a_sphere,

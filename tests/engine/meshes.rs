@@ -238,6 +238,78 @@ pub fn animations_move_nodes(_: &mut Engine) {
     assert_eq!(at("animation: None", 0.5), [true, false, false]);
 }
 
+/// The dry scene with squares in it, under a sky that is the same everywhere.
+fn lit(bodies: &str, sky: u8, (direction, sun): ((f64, f64, f64), f64), points: &[[f32; 2]]) -> Vec<[f32; 4]> {
+    let mut png = std::io::Cursor::new(Vec::new());
+    let picture = image::RgbaImage::from_pixel(8, 4, image::Rgba([sky, sky, sky, 255]));
+    picture.write_to(&mut png, image::ImageFormat::Png).unwrap();
+    let graph = r#"Graph(
+    inputs: { "camera": Camera, "particles": Particles(attributes: ["position"]), "sun": Light, "environment": Texture,
+              "meshes": Meshes },
+    passes: [
+        Use(graph: "parts/environment.ron", name: "sky"),
+        Use(graph: "parts/dry_scene.ron", name: "dry", bind: {"sky": "sky.cube", "ambient": "sky.ambient"}, params: {"floor": false}),
+    ],
+    outputs: ["dry.color"],
+)"#;
+    // From far above, so that 1 m is 16 pixels; y of the picture is -z of the world.
+    let scene = format!(
+        r#"Scene(graph: "graph.ron", camera: Camera(eye: (0, 400, 0), target: (0, 0, 0), up: (0, 0, -1), fov: 0.57295), size: (64, 64),
+    lights: {{"sun": Light(direction: {direction:?}, intensity: {sun:?})}}, environment: "sky.png",
+    particles: {{"particles": (file: "far.csv", radius: 0.01)}}, meshes: {{"meshes": [{bodies}]}})"#
+    );
+    let material = |more: &str| square(&format!(r#""pbrMetallicRoughness": {{ {more} }}"#), "", "");
+    let files = MemoryFiles::default()
+        .with("graph.ron", graph)
+        .with("scene.ron", scene)
+        .with("sky.png", png.into_inner())
+        .with("far.csv", "x,y,z\n1.8,0,1.8\n1.8,0.02,1.8\n")
+        .with("plastic.gltf", material(r#""metallicFactor": 0, "roughnessFactor": 0.6"#))
+        .with("mirror.gltf", material(r#""metallicFactor": 1, "roughnessFactor": 0"#))
+        .with("metal.gltf", material(r#""metallicFactor": 1, "roughnessFactor": 0.7"#));
+    seen(&files, Moment::default(), points)
+}
+
+/// Under an even sky of radiance L nothing that absorbs nothing is brighter than L, and what scatters all of it is L.
+pub fn an_even_sky_makes_white_things_as_bright_as_it(_: &mut Engine) {
+    let flat = "rotation: (-90, 0, 0)";
+    let bodies = format!(
+        r#"(file: "plastic.gltf", position: (-1, 0, 0), {flat}), (file: "mirror.gltf", position: (1, 0, 0), {flat}),
+        (file: "metal.gltf", position: (0, 0, -1), {flat}), (file: "plastic.gltf", position: (0, 0, 1), rotation: (-50, 0, 0))"#
+    );
+    for (sky, radiance) in [(255, 1.0), (188, 0.5)] {
+        let found = lit(&bodies, sky, ((0.0, -1.0, 0.0), 0.0), &[[-1.0, 0.0], [1.0, 0.0], [0.0, 1.0], [0.0, -1.0]]);
+        for (what, color, low) in [
+            ("plastic", found[0], 0.985),
+            ("a mirror", found[1], 0.95),
+            ("metal", found[2], 0.95),
+            ("slanted", found[3], 0.985),
+        ] {
+            for channel in &color[..3] {
+                let part = channel / radiance;
+                assert!((low..1.015).contains(&part), "{what} shows {part} of a sky of {radiance}");
+            }
+            assert_eq!(color[3], 1.0, "{what}");
+        }
+    }
+}
+
+/// A small square half a metre above a large one, the sun aslant, and no sky.
+pub fn meshes_cast_shadows_on_meshes(_: &mut Engine) {
+    let flat = "rotation: (-90, 0, 0)";
+    let bodies = format!(
+        r#"(file: "plastic.gltf", scale: (3, 3, 1), {flat}), (file: "plastic.gltf", position: (0, 0.5, 0), scale: 0.8, {flat})"#
+    );
+    let points = [[0.0, 0.0], [-0.65, 0.0], [0.65, 0.0], [0.65, 0.7]];
+    let found = lit(&bodies, 0, ((1.0, -1.0, 0.0), 3.0), &points);
+    // Lambert: 3 cos 45° / pi, less what is mirrored, and a little of GGX.
+    let is_lit = |color: &[f32; 4]| (0.6..0.75).contains(&color[0]);
+    assert!(is_lit(&found[0]) && is_lit(&found[1]) && is_lit(&found[3]), "{found:?}");
+    assert!(found[2][0] < 0.01, "in the shadow: {found:?}");
+    let above = lit(&bodies, 0, ((-1.0, -1.0, 0.0), 3.0), &points);
+    assert!(is_lit(&above[2]) && above[1][0] < 0.01, "the shadow lies on the other side now: {above:?}");
+}
+
 pub fn what_does_not_fit_is_told(_: &mut Engine) {
     let said = |graph: String, bodies: &str| {
         let (mut sources, mut cache) = (Sources::new(), Cache::default());
