@@ -82,7 +82,8 @@ fn main() {
         Gpu::open(&GpuOptions::default()).map_err(|error| eprintln!("without a device: {}", error.message)).ok();
     println!("{millions} million particles");
     println!("{:>24} {:>8} {:>12} {:>12} {:>12} {:>7}", "file", "MiB", "read+copy", "decoded", "on device", "ratio");
-    let files: [(&str, fn(&Path, usize)); 4] = [
+    type Write = fn(&Path, usize);
+    let files: [(&str, Write); 4] = [
         ("positions.vtk", |path, count| vtk(path, count, false)),
         ("velocities.vtk", |path, count| vtk(path, count, true)),
         ("ids_velocities.bgeo", bgeo),

@@ -25,22 +25,19 @@ fn cones_of_white(kelvin: f32, tint: f32) -> vec3f {
     let cool = vec4f(-3.0258469, 2.1070379, 0.2226347, 0.240390);
     let warm = vec4f(-0.2661239, -0.2343589, 0.8776956, 0.179910);
     let x = dot(select(warm, cool, kelvin >= 4000.0), vec4f(t * t * t, t * t, t, 1.0));
-    var curve = vec4f(3.0817580, -5.87338670, 3.75112997, -0.37001483);
-    if kelvin < 2222.0 {
-        curve = vec4f(-1.1063814, -1.34811020, 2.18555832, -0.20219683);
-    } else if kelvin < 4000.0 {
-        curve = vec4f(-0.9549476, -1.37418593, 2.09137015, -0.16748867);
-    }
+    let coolest = vec4f(3.0817580, -5.87338670, 3.75112997, -0.37001483);
+    let middle = vec4f(-0.9549476, -1.37418593, 2.09137015, -0.16748867);
+    let warmest = vec4f(-1.1063814, -1.34811020, 2.18555832, -0.20219683);
+    let curve = select(select(coolest, middle, kelvin < 4000.0), warmest, kelvin < 2222.0);
     // Magenta light has less green in it than white.
     let y = dot(curve, vec4f(x * x * x, x * x, x, 1.0)) - 0.03 * tint;
     return CONE_FROM_XYZ * vec3f(x / y, 1.0, (1.0 - x - y) / y);
 }
 
 /// A linear colour as it looks to eyes that take light of this temperature and tint for white. Daylight changes nothing.
+/// No branch depends on the values: a software driver would compile the shader again for each of them.
 fn white_balanced(color: vec3f, kelvin: f32, tint: f32) -> vec3f {
-    if kelvin == DAYLIGHT_K && tint == 0.0 {
-        return color;
-    }
     let gain = cones_of_white(DAYLIGHT_K, 0.0) / cones_of_white(kelvin, tint);
-    return max(RGB_FROM_CONE * (gain * (CONE_FROM_RGB * color)), vec3f(0.0));
+    let balanced = max(RGB_FROM_CONE * (gain * (CONE_FROM_RGB * color)), vec3f(0.0));
+    return select(balanced, color, kelvin == DAYLIGHT_K && tint == 0.0);
 }
