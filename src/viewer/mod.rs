@@ -1,9 +1,9 @@
 //! The window: a picture that follows its files, the camera and every parameter, and a look at
 //! whatever makes it.
 //!
-//! [`core`] holds what happens, without a window: it takes news from [`worker`] (a thread that
+//! [`core`] holds what happens, without a window: it takes news from `worker` (a thread that
 //! loads, checks, plans and compiles), submits frames to a [`crate::host::Session`], and keeps
-//! [`state`]. [`ui`] draws that state with egui and gives back [`action::Action`]s. [`app`] is the
+//! [`state`]. `ui` draws that state with egui and gives back [`action::Action`]s. `app` is the
 //! event loop. Only `app`, `painter` and `ui` know winit and egui, so that the rest is tested
 //! without a display.
 

@@ -17,7 +17,7 @@ pub struct Pass {
     pub path: String,
     pub span: Span,
     pub unit: usize,
-    /// Index into [`Plan::steps`].
+    /// Index into [`super::Plan::steps`].
     pub steps: Option<usize>,
     pub kind: PassKind,
     pub accesses: Vec<Access>,

@@ -5,7 +5,7 @@
 //! is checked against the bytes that are there before memory is taken for it, so that memory is
 //! bounded by what the file holds, and what is wrong becomes a [`ReadError`] with its place.
 //!
-//! Cells and polygons are read over, but for [`surface`], which mesh files ask for. Nothing else
+//! Cells and polygons are read over, but for `surface`, which mesh files ask for. Nothing else
 //! that is not a value per point is tried here.
 
 mod bgeo;
