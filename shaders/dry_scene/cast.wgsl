@@ -1,6 +1,6 @@
 // What the sun sees of the meshes: how near each point is. Holes of masked materials let light through.
 #import "lib/light.wgsl"
-#import "lib/meshes.wgsl"
+#import "lib/mesh_place.wgsl"
 #import "lib/sun_view.wgsl"
 
 struct Params {
@@ -27,8 +27,6 @@ var<uniform> sun: Light;
 var<uniform> material: Material;
 var base_color_texture: texture_2d<f32>;
 var base_color_sampler: sampler;
-var<storage, read> meshes_bodies: array<mat4x4f>;
-var<storage, read> meshes_instances: array<Instance>;
 
 @vertex
 fn seen_by_sun(
@@ -38,8 +36,7 @@ fn seen_by_sun(
     @location(3) color0: vec4f,
     @location(4) instance: u32,
 ) -> Vertex {
-    let i = meshes_instances[instance];
-    let world = meshes_bodies[i.body] * i.body_from_mesh * vec4f(position, 1.0);
+    let world = world_from_mesh(instance) * vec4f(position, 1.0);
     let uv = select(uv0, uv1, material.base_color_texcoord == 1u);
     var out: Vertex;
     out.clip = vec4f(sun_view(world.xyz, params.cast_middle, params.cast_radius_m, sun.direction), 1.0);

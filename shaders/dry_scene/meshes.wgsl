@@ -3,7 +3,7 @@
 #import "dry_scene/skylight.wgsl"
 #import "dry_scene/sunlight.wgsl"
 #import "lib/camera.wgsl"
-#import "lib/meshes.wgsl"
+#import "lib/mesh_place.wgsl"
 
 struct Params {
     specular_levels: u32,
@@ -58,8 +58,6 @@ var occlusion_sampler: sampler;
 var emissive_texture: texture_2d<f32>;
 var emissive_sampler: sampler;
 var specular_specular: texture_cube<f32>;
-var<storage, read> meshes_bodies: array<mat4x4f>;
-var<storage, read> meshes_instances: array<Instance>;
 
 @vertex
 fn place(
@@ -71,14 +69,12 @@ fn place(
     @location(5) color0: vec4f,
     @location(6) instance: u32,
 ) -> Vertex {
-    let i = meshes_instances[instance];
-    let world_from_mesh = meshes_bodies[i.body] * i.body_from_mesh;
-    let world = world_from_mesh * vec4f(position, 1.0);
+    let at = placed(position, normal, instance);
     var out: Vertex;
-    out.clip = camera.clip_from_world * world;
-    out.world = world.xyz;
-    out.normal = transform_normal(world_from_mesh, normal);
-    out.tangent = vec4f((world_from_mesh * vec4f(tangent.xyz, 0.0)).xyz, tangent.w);
+    out.clip = camera.clip_from_world * vec4f(at.world, 1.0);
+    out.world = at.world;
+    out.normal = at.normal;
+    out.tangent = vec4f((world_from_mesh(instance) * vec4f(tangent.xyz, 0.0)).xyz, tangent.w);
     out.uv0 = uv0;
     out.uv1 = uv1;
     out.color = color0;

@@ -22,13 +22,7 @@ fn sweep(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) grou
     }
     let p = sorted_position(grid_sorted[own]);
     let cell = grid_cell(p);
-    var candidates = 0u;
-    for (var k = 0u; k < RUNS; k++) {
-        let run = run_around(cell, k);
-        candidates += run.y - run.x;
-    }
-    // Particles heaped beyond reason are sampled evenly, so that the time stays bounded.
-    let stride = 1u + candidates / params.candidates_max;
+    let stride = stride_around(cell, params.candidates_max);
 
     // The particle itself counts once, at distance 0.
     var weight = 0.0;

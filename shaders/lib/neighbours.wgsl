@@ -37,3 +37,14 @@ fn run_around(cell: vec3u, run: u32) -> vec2u {
 fn grid_cell(p: vec3f) -> vec3u {
     return cell_of(p, grid.particles_min, grid.grid_cell_size);
 }
+
+/// Every how many-th particle of each run is looked at: particles heaped beyond reason are sampled evenly, so that the
+/// time stays bounded.
+fn stride_around(cell: vec3u, candidates_max: u32) -> u32 {
+    var candidates = 0u;
+    for (var k = 0u; k < RUNS; k++) {
+        let run = run_around(cell, k);
+        candidates += run.y - run.x;
+    }
+    return 1u + candidates / candidates_max;
+}

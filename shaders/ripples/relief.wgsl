@@ -1,16 +1,12 @@
 // The surface as others read it: height, slopes by central differences, and curvature.
+#import "ripples/surface.wgsl"
 
 struct Params {
     cell_m: f32,
 }
 
 var<uniform> params: Params;
-var surface: texture_2d<f32>;
 var relief: texture_storage_2d<rgba16float, write>;
-
-fn height(texel: vec2i, last: vec2i) -> f32 {
-    return textureLoad(surface, clamp(texel, vec2i(0), last), 0).x;
-}
 
 @compute @workgroup_size(8, 8)
 fn slopes(@builtin(global_invocation_id) id: vec3u) {

@@ -2,6 +2,7 @@
 // the heights as they are, then heights. What it keeps is half v^2 + half c^2 grad h(now) . grad h(before), so that
 // waves neither grow nor fade by themselves. The walls reflect: beyond them lies what lies before them.
 #import "ripples/ball.wgsl"
+#import "ripples/surface.wgsl"
 
 struct Params {
     time: f32,
@@ -19,12 +20,7 @@ struct Params {
 }
 
 var<uniform> params: Params;
-var surface: texture_2d<f32>;
 var surface_next: texture_storage_2d<rg32float, write>;
-
-fn height(texel: vec2i, last: vec2i) -> f32 {
-    return textureLoad(surface, clamp(texel, vec2i(0), last), 0).x;
-}
 
 @compute @workgroup_size(8, 8)
 fn step_surface(@builtin(global_invocation_id) id: vec3u) {

@@ -19,12 +19,7 @@ fn link(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) group
     }
     let p = sorted_position(grid_sorted[own]);
     let cell = grid_cell(p);
-    var candidates = 0u;
-    for (var k = 0u; k < RUNS; k++) {
-        let run = run_around(cell, k);
-        candidates += run.y - run.x;
-    }
-    let stride = 1u + candidates / params.candidates_max;
+    let stride = stride_around(cell, params.candidates_max);
     for (var k = 0u; k < RUNS; k++) {
         let run = run_around(cell, k);
         // Of a pair one is enough; of a heap that is sampled, both must try.
