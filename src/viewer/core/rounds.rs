@@ -1,0 +1,92 @@
+//! What the worker made of the files: content, a plan that is built, and what was wrong.
+
+use std::time::{Duration, Instant};
+
+use super::Core;
+use crate::diagnostic::Severity;
+use crate::engine::any_device_gone;
+use crate::host::{Built, Content, Input};
+use crate::viewer::params::{self, groups};
+use crate::viewer::state::{Findings, Reload, bounds, listed, short};
+use crate::viewer::worker::{Cause, Round};
+
+impl Core {
+    pub(super) fn take(&mut self, round: Round) {
+        self.state.busy = None;
+        let Round { cause, planned, read, mut diagnostics, sources, noticing, checking, building } = round;
+        if let Some(read) = &read {
+            self.take_content(read);
+        }
+        let began = Instant::now();
+        let mut built = None;
+        if let Some(planned) = planned {
+            match self.session.install(*planned) {
+                Ok(made) => {
+                    self.installed(&made);
+                    diagnostics.extend(made.diagnostics.clone());
+                    self.sources.clone_from(&sources);
+                    built = Some(made);
+                }
+                Err(found) => {
+                    self.is_lost |= any_device_gone(&found);
+                    diagnostics.extend(found);
+                }
+            }
+        }
+        let (errors, warnings) = (diagnostics.count(Severity::Error), diagnostics.count(Severity::Warning));
+        if cause != Cause::Wanted {
+            self.state.log(Reload {
+                at: Instant::now(),
+                what: match &cause {
+                    Cause::Opened(path) => format!("opened {}", short(path)),
+                    Cause::Changed(files) if files.is_empty() => "reloaded".into(),
+                    Cause::Changed(files) => listed(files),
+                    Cause::Wanted => String::new(),
+                },
+                is_good: built.is_some(),
+                errors,
+                warnings,
+                noticing_ms: ms(noticing),
+                checking_ms: ms(checking),
+                building_ms: ms(building) + ms(began.elapsed()),
+                drawing_ms: None,
+                pipelines_built: built.as_ref().map_or(0, |b| b.pipelines_built),
+                pipelines_kept: built.as_ref().map_or(0, |b| b.pipelines_reused),
+            });
+            self.reload_pending = built.is_some();
+        }
+        let is_stale = built.is_none();
+        self.state.findings = (!diagnostics.is_empty()).then_some(Findings { diagnostics, sources, is_stale });
+    }
+
+    /// What files say by now.
+    pub(super) fn take_content(&mut self, content: &Content) {
+        params::settle(&mut self.state.overrides, content);
+        let present = content.present_params.iter().map(|(path, v)| (format!("{}{path}", params::PRESENT), v.clone()));
+        let own = content.params.iter().map(|(path, v)| (path.clone(), v.clone()));
+        self.state.in_scene = own.chain(present).collect();
+        self.state.bounds = bounds(content);
+        let home = self.state.home.replace(content.camera);
+        // A camera that was not moved by hand follows the scene's.
+        if self.state.camera.is_none() || self.state.camera == home {
+            self.state.camera = Some(content.camera);
+        }
+    }
+
+    pub(super) fn installed(&mut self, built: &Built) {
+        self.version += 1;
+        self.state.memory_bytes = built.memory_bytes;
+        self.state.changes_over_time = self.session.changes_over_time();
+        let mut inputs = self.session.content().into_iter().flat_map(|content| content.inputs.values());
+        self.state.takes_pointer = inputs.any(|input| matches!(input, Input::Pointer(_)));
+        if let Some(plan) = self.session.plan() {
+            self.state.viewport = plan.viewport;
+            self.state.groups = groups(plan, self.session.present_plan());
+            self.state.times[0].keep(|path| plan.passes.iter().any(|p| p.path == path));
+        }
+    }
+}
+
+fn ms(duration: Duration) -> f64 {
+    duration.as_secs_f64() * 1e3
+}
