@@ -39,6 +39,7 @@ struct Shipped<'e> {
     alter: fn(&mut Plan),
     policy: Policy,
     skips: Option<Runner>,
+    /// Runs everything, to compare with, where a test compares.
     full: Option<Runner>,
 }
 
@@ -54,6 +55,14 @@ fn graphs() -> Vec<String> {
 
 impl<'e> Shipped<'e> {
     fn new(engine: &'e mut Engine, name: &str, alter: fn(&mut Plan)) -> Self {
+        let mut shipped = Self::alone(engine, name, alter);
+        shipped.prepare_full();
+        shipped.upload();
+        shipped
+    }
+
+    /// Without the runner that runs everything.
+    fn alone(engine: &'e mut Engine, name: &str, alter: fn(&mut Plan)) -> Self {
         let mut sources = Sources::new();
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("graphs").join(name);
         let loaded = program::load(&DiskFiles, &mut sources, path.to_str().unwrap(), None);
@@ -88,15 +97,21 @@ impl<'e> Shipped<'e> {
     }
 
     fn prepare(&mut self) {
-        let plan = self.plan();
-        let mut altered = plan.clone();
-        (self.alter)(&mut altered);
-        let before = (self.skips.take(), self.full.take());
+        let mut plan = self.plan();
+        (self.alter)(&mut plan);
+        let before = self.skips.take();
         self.engine.policy = self.policy;
-        let prepared = self.engine.prepare(altered, before.0);
+        let prepared = self.engine.prepare(plan, before);
         self.skips = Some(prepared.unwrap_or_else(|refused| panic!("{}: {:#?}", self.name, refused.diagnostics)));
+        if self.full.is_some() {
+            self.prepare_full();
+        }
+    }
+
+    fn prepare_full(&mut self) {
+        let (plan, before) = (self.plan(), self.full.take());
         self.engine.policy = Policy::Smallest;
-        let prepared = self.engine.prepare(plan, before.1);
+        let prepared = self.engine.prepare(plan, before);
         self.full = Some(prepared.unwrap_or_else(|refused| panic!("{}: {:#?}", self.name, refused.diagnostics)));
         self.full.as_mut().unwrap().run_all(true);
     }
@@ -255,7 +270,7 @@ pub fn orbiting_runs_what_sees_the_camera(engine: &mut Engine) {
 
 pub fn a_parameter_runs_what_has_it_as_a_cause(engine: &mut Engine) {
     for name in graphs() {
-        let mut shipped = Shipped::new(engine, &name, |_| ());
+        let mut shipped = Shipped::alone(engine, &name, |_| ());
         let params = shipped.params();
         shipped.run(false);
         let mut turned = 0;
