@@ -240,14 +240,19 @@ fn a_pass_that_is_switched_off_does_not_run() {
     }
     let mut desk = Desk::new();
     let first = desk.picture();
-    let frames = desk.core.state.times[0].last.as_ref().map(|report| report.passes.len());
-    assert_eq!(frames, Some(1));
+    let ran = desk.core.state.times[0].last.as_ref().map(|report| report.passes.len());
+    assert_eq!(ran, Some(1));
     desk.core.act(Action::Switch { pass: "discs".into(), on: false });
+    desk.core.act(Action::Set { path: "size".into(), value: Some(Value::Float(3.0)) });
+    assert!(desk.picture() == first, "the pass that is switched off ran");
     desk.core.act(Action::RunAll(true));
-    desk.rest();
+    assert!(desk.picture() == first, "what is switched off stays off when everything runs");
     desk.core.act(Action::RunAll(false));
     desk.core.act(Action::Switch { pass: "discs".into(), on: true });
-    assert!(desk.picture() == first);
+    let larger = desk.picture();
+    assert!(larger != first, "it does not run again");
+    desk.core.act(Action::Set { path: "size".into(), value: None });
+    assert!(larger != desk.picture() && desk.picture() == first);
 }
 
 #[test]

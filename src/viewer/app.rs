@@ -33,6 +33,8 @@ pub fn run(options: Options) -> Result<(), Diagnostics> {
 }
 
 fn no_display(why: &str) -> Diagnostic {
+    // winit says `os error at FILE:LINE: what happened`; the place is in its own source.
+    let why = why.strip_prefix("os error at ").and_then(|rest| rest.split_once(": ")).map_or(why, |(_, what)| what);
     Diagnostic::error(Code::DEVICE, format!("no usable graphics adapter: there is no display for a window: {why}"))
         .hint("`meniscus render SCENE -o FILE` needs none, and `meniscus watch` follows changes without one")
 }
