@@ -185,12 +185,7 @@ impl Session {
         let Some(mut content) = self.content.clone().filter(|_| !inputs.is_empty()) else {
             return Ok(Diagnostics::new());
         };
-        for (name, input) in inputs {
-            let takers = [&mut content.inputs, &mut content.present_inputs];
-            for taken in takers.into_iter().filter_map(|taker| taker.get_mut(&name)) {
-                *taken = input.clone();
-            }
-        }
+        content.feed(inputs);
         self.build(content).map(|built| built.diagnostics)
     }
 

@@ -401,6 +401,16 @@ fn corners(inputs: &BTreeMap<String, Input>) -> Vec<[f32; 3]> {
 }
 
 impl Content {
+    /// Puts other inputs in the place of those of the same names.
+    pub fn feed(&mut self, inputs: BTreeMap<String, Input>) {
+        for (name, input) in inputs {
+            let takers = [&mut self.inputs, &mut self.present_inputs];
+            for taken in takers.into_iter().filter_map(|taker| taker.get_mut(&name)) {
+                *taken = input.clone();
+            }
+        }
+    }
+
     /// What planning the graph needs to know.
     pub fn request(&self, features: Features, limits: Limits, capacities: &BTreeMap<String, u64>) -> Request {
         Request {

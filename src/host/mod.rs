@@ -27,5 +27,5 @@ pub use draw::{Drawn, Moment};
 pub use inputs::Input;
 pub use live::{Due, Live, Read};
 pub use load::{Content, Job, Loaded, load};
-pub use sequence::{Player, When};
+pub use sequence::{Player, Track, When};
 pub use source::renderable;

@@ -1,7 +1,12 @@
-//! Time in the window: it plays, pauses, steps and is scrubbed, and slows when frames take long.
+//! Time in the window: it plays, pauses, steps and is scrubbed, and slows when frames take long. Where a
+//! scene has a sequence of files, frames are the files' numbers, at the files' rate.
 
-/// Frames a second of the numbers that frames bear.
+use crate::host::{Track, When};
+
+/// Frames a second of the numbers that frames bear, where no sequence says another.
 pub const FRAMES_PER_SECOND: f64 = 60.0;
+/// Where the slider ends at first, if nothing ends by itself.
+const END_S: f64 = 10.0;
 /// A frame shows at most so much time at once: what draws slower than this is shown slowed.
 const LONGEST_DELTA_S: f64 = 1.0 / 15.0;
 
@@ -18,38 +23,129 @@ pub struct Clock {
     pub slowdown: f64,
     /// Where the slider ends.
     pub end_s: f64,
+    pub beat: Beat,
+    /// After the last frame of a sequence comes the first.
+    pub repeats: bool,
+}
+
+/// The frames that a clock counts.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Beat {
+    /// Frames a second.
+    pub rate: f64,
+    /// The number of the frame at time 0.
+    pub first: u64,
+    /// Of a sequence, the number of its last frame.
+    pub last: Option<u64>,
+}
+
+impl Default for Beat {
+    fn default() -> Self {
+        Self { rate: FRAMES_PER_SECOND, first: 0, last: None }
+    }
+}
+
+impl Beat {
+    /// That of a scene's first sequence, if it has any.
+    pub fn of(track: Option<&Track>) -> Self {
+        track.map_or_else(Self::default, |track| Self {
+            rate: track.rate,
+            first: *track.frames.start(),
+            last: Some(*track.frames.end()),
+        })
+    }
+
+    fn end_s(&self) -> Option<f64> {
+        self.last.map(|last| last.saturating_sub(self.first) as f64 / self.rate)
+    }
 }
 
 impl Default for Clock {
     fn default() -> Self {
-        Self { is_playing: false, time_s: 0.0, speed: 1.0, delta_s: 0.0, slowdown: 1.0, end_s: 10.0 }
+        Self {
+            is_playing: false,
+            time_s: 0.0,
+            speed: 1.0,
+            delta_s: 0.0,
+            slowdown: 1.0,
+            end_s: END_S,
+            beat: Beat::default(),
+            repeats: false,
+        }
     }
 }
 
 impl Clock {
     /// The number of the frame at the time.
     pub fn frame(&self) -> u64 {
-        (self.time_s * FRAMES_PER_SECOND + 1e-6).floor().max(0.0) as u64
+        let frame = self.beat.first.saturating_add((self.time_s * self.beat.rate + 1e-6).floor().max(0.0) as u64);
+        self.beat.last.map_or(frame, |last| frame.min(last.max(self.beat.first)))
     }
 
-    /// Lets real time pass, if it plays.
+    /// When a frame is.
+    pub fn time_of(&self, frame: u64) -> f64 {
+        frame.saturating_sub(self.beat.first) as f64 / self.beat.rate
+    }
+
+    /// What sequences show at the time: the same as `render --frame` with this number.
+    pub fn when(&self) -> When {
+        self.beat.last.map_or(When::Start, |_| When::Frame(self.frame()))
+    }
+
+    /// Counts other frames from now on; the time stays, as far as they go.
+    pub fn follow(&mut self, beat: Beat) {
+        if self.beat == beat {
+            return;
+        }
+        self.beat = beat;
+        self.end_s = beat.end_s().unwrap_or_else(|| END_S.max(self.time_s));
+        if beat.last.is_some() {
+            self.time_s = self.time_s.min(self.end_s);
+        }
+    }
+
+    pub fn play(&mut self, on: bool) {
+        if on && self.is_at_end() {
+            self.seek(0.0);
+        }
+        self.is_playing = on;
+    }
+
+    fn is_at_end(&self) -> bool {
+        self.beat.last.is_some() && self.time_s >= self.end_s
+    }
+
+    /// Lets real time pass, if it plays. No frame of a sequence is left out; at its end it begins anew or
+    /// stands.
     pub fn advance(&mut self, real_s: f64) {
         if !self.is_playing || real_s <= 0.0 {
             return;
         }
+        if self.is_at_end() {
+            match self.repeats {
+                true => self.time_s = 0.0,
+                false => self.is_playing = false,
+            }
+            self.delta_s = 0.0;
+            return;
+        }
         let wanted = real_s * self.speed;
-        self.delta_s = wanted.min(LONGEST_DELTA_S * self.speed.max(1.0));
+        let longest = if self.beat.last.is_some() { 1.0 / self.beat.rate } else { LONGEST_DELTA_S * self.speed.max(1.0) };
+        self.delta_s = wanted.min(longest);
         let now = if self.delta_s > 0.0 { wanted / self.delta_s } else { 1.0 };
         self.slowdown += (now - self.slowdown) * 0.2;
         self.time_s += self.delta_s;
-        self.end_s = self.end_s.max(self.time_s);
+        match self.beat.last {
+            Some(_) => self.time_s = self.time_s.min(self.end_s),
+            None => self.end_s = self.end_s.max(self.time_s),
+        }
     }
 
     /// Goes by whole frames, and stops there.
     pub fn step(&mut self, frames: i64) {
-        let frame = self.frame().saturating_add_signed(frames);
+        let frame = self.frame().saturating_add_signed(frames).max(self.beat.first);
         let before = self.time_s;
-        self.seek(frame as f64 / FRAMES_PER_SECOND);
+        self.seek(self.time_of(frame));
         self.delta_s = (self.time_s - before).max(0.0);
         self.is_playing = false;
     }
@@ -58,7 +154,10 @@ impl Clock {
         self.time_s = if time_s.is_finite() { time_s.max(0.0) } else { 0.0 };
         self.delta_s = 0.0;
         self.slowdown = 1.0;
-        self.end_s = self.end_s.max(self.time_s);
+        match self.beat.last {
+            Some(_) => self.time_s = self.time_s.min(self.end_s),
+            None => self.end_s = self.end_s.max(self.time_s),
+        }
     }
 }
 
@@ -87,6 +186,46 @@ mod tests {
         (0..60).for_each(|_| clock.advance(1.0));
         assert!((clock.time_s - 5.0).abs() < 1e-9, "{}", clock.time_s);
         assert!((clock.slowdown - 15.0).abs() < 0.1, "{}", clock.slowdown);
+    }
+
+    fn in_sequence() -> Clock {
+        let mut clock = Clock { time_s: 99.0, ..Clock::default() };
+        clock.follow(Beat { rate: 25.0, first: 3, last: Some(13) });
+        clock
+    }
+
+    #[test]
+    fn a_sequence_counts_its_own_frames_and_ends() {
+        let mut clock = in_sequence();
+        assert_eq!((clock.time_s, clock.end_s, clock.frame()), (0.4, 0.4, 13), "time goes as far as the files do");
+        clock.play(true);
+        assert_eq!((clock.time_s, clock.frame()), (0.0, 3), "playing from the end begins anew");
+        let mut seen = vec![clock.frame()];
+        for _ in 0..40 {
+            // Slower than the files' rate: each frame is shown all the same.
+            clock.advance(0.2);
+            seen.push(clock.frame());
+        }
+        seen.dedup();
+        assert_eq!(seen, (3..=13).collect::<Vec<_>>());
+        assert!(!clock.is_playing && clock.slowdown > 4.0);
+        clock.step(-1);
+        assert_eq!((clock.frame(), clock.time_of(12)), (12, clock.time_s));
+        (0..5).for_each(|_| clock.step(1));
+        assert_eq!(clock.frame(), 13);
+        clock.step(-100);
+        assert_eq!(clock.frame(), 3);
+    }
+
+    #[test]
+    fn a_sequence_plays_at_its_rate_and_may_repeat() {
+        let mut clock = Clock { repeats: true, ..in_sequence() };
+        clock.play(true);
+        // 0.2 s at 25 frames a second are 5 frames, however often it is painted.
+        (0..20).for_each(|_| clock.advance(0.01));
+        assert_eq!(clock.frame(), 8);
+        (0..21).for_each(|_| clock.advance(0.01));
+        assert_eq!((clock.frame(), clock.is_playing), (3, true));
     }
 
     #[test]

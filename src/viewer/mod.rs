@@ -18,6 +18,7 @@ mod inspect;
 pub mod look;
 mod painter;
 pub mod params;
+mod sequences;
 pub mod state;
 mod ui;
 mod viewpoints;

@@ -7,9 +7,10 @@ use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant, SystemTime};
 
 use super::params::{self, Overrides};
+use super::sequences::Sequences;
 use crate::diagnostic::{Code, Diagnostic, Diagnostics, Sources};
 use crate::files::DiskFiles;
-use crate::host::{Builder, Cache, Content, Job, Planned, load};
+use crate::host::{Builder, Cache, Content, Job, Planned, When, load};
 use crate::reload::{Waker, Watch};
 
 /// What the window wants beside what files say.
@@ -20,6 +21,8 @@ pub struct Wants {
     pub viewport: Option<[u32; 2]>,
     /// Instance paths that are looked at.
     pub roots: Vec<String>,
+    /// Which frame of sequences.
+    pub when: When,
 }
 
 /// Why the worker worked.
@@ -40,6 +43,8 @@ pub struct Round {
     pub read: Option<Box<Content>>,
     pub diagnostics: Diagnostics,
     pub sources: Sources,
+    /// The frame of sequences that it shows.
+    pub when: When,
     pub noticing: Duration,
     pub checking: Duration,
     pub building: Duration,
@@ -86,6 +91,8 @@ impl Worker {
                 content: None,
                 sources: Sources::new(),
                 diagnostics: Diagnostics::new(),
+                read: Vec::new(),
+                sequences: None,
             };
             bench.work();
         });
@@ -153,6 +160,9 @@ struct Bench {
     sources: Sources,
     /// What reading them found.
     diagnostics: Diagnostics,
+    /// Files that the content was read from.
+    read: Vec<PathBuf>,
+    sequences: Option<Sequences>,
 }
 
 impl Bench {
@@ -182,7 +192,10 @@ impl Bench {
             if let Some(cause) = load {
                 self.load(cause, Duration::ZERO);
             } else if plan && self.content.is_some() {
-                let began = Instant::now();
+                let (since, began) = (SystemTime::now(), Instant::now());
+                if self.turn() {
+                    self.watch_files(since);
+                }
                 self.plan(Cause::Wanted, Duration::ZERO, began);
             } else {
                 self.wait();
@@ -210,28 +223,37 @@ impl Bench {
         let (since, began) = (SystemTime::now(), Instant::now());
         let mut sources = Sources::new();
         let loaded = load(&DiskFiles, &mut sources, &job, &mut self.cache);
-        if let Err(error) = self.watch.set(loaded.read.iter().map(PathBuf::as_path), since) {
-            self.tell_blind(&error);
-        }
+        self.read = loaded.read;
         match loaded.content {
             Some(content) => {
                 (self.sources, self.diagnostics) = (sources, loaded.diagnostics);
+                self.sequences = Sequences::new(&content, job.when);
                 self.content = Some(content);
+                self.turn();
+                self.watch_files(since);
                 self.plan(cause, noticing, began);
             }
             None => {
+                self.watch_files(since);
                 let checking = began.elapsed();
-                self.send(Round {
-                    cause,
-                    planned: None,
-                    read: None,
-                    diagnostics: loaded.diagnostics,
-                    sources,
-                    noticing,
-                    checking,
-                    building: Duration::ZERO,
-                });
+                self.send(Round { noticing, checking, ..self.failed(cause, loaded.diagnostics, sources) });
             }
+        }
+    }
+
+    /// Puts the frames of sequences that are wanted into the content; tells whether they are others.
+    fn turn(&mut self) -> bool {
+        match (&mut self.content, &mut self.sequences) {
+            (Some(content), Some(sequences)) => sequences.turn(content, self.wants.when),
+            _ => false,
+        }
+    }
+
+    fn watch_files(&mut self, since: SystemTime) {
+        let frames = self.sequences.as_ref().map(Sequences::files).unwrap_or_default();
+        let all = self.read.iter().chain(&frames).map(PathBuf::as_path);
+        if let Err(error) = self.watch.set(all, since) {
+            self.tell_blind(&error);
         }
     }
 
@@ -241,6 +263,8 @@ impl Bench {
         params::apply(&mut content, &self.wants.params);
         content.viewport = self.wants.viewport.unwrap_or(content.viewport);
         let mut diagnostics = self.diagnostics.clone();
+        let told = self.sequences.iter().flat_map(|sequences| sequences.told().iter());
+        told.for_each(|found| diagnostics.push(found.clone()));
         let looked_at = content.roots.iter().chain(&self.wants.roots).cloned().collect();
         let wanted = Content { roots: looked_at, ..content.clone() };
         // What is looked at may be gone from the graph: that hinders no picture.
@@ -256,22 +280,28 @@ impl Bench {
             }
         };
         let read = (cause != Cause::Wanted).then(|| Box::new(read));
-        let sources = self.sources.clone();
         let building = began.elapsed();
-        self.send(Round { cause, planned, read, diagnostics, sources, noticing, checking, building });
+        let failed = self.failed(cause, diagnostics, self.sources.clone());
+        self.send(Round { planned, read, noticing, checking, building, ..failed });
     }
 
-    fn tell_blind(&mut self, error: &notify::Error) {
-        self.send(Round {
-            cause: Cause::Changed(Vec::new()),
+    /// A round that came to nothing.
+    fn failed(&self, cause: Cause, diagnostics: Diagnostics, sources: Sources) -> Round {
+        Round {
+            cause,
             planned: None,
             read: None,
-            diagnostics: blind(error).into(),
-            sources: Sources::new(),
+            diagnostics,
+            sources,
+            when: self.wants.when,
             noticing: Duration::ZERO,
             checking: Duration::ZERO,
             building: Duration::ZERO,
-        });
+        }
+    }
+
+    fn tell_blind(&mut self, error: &notify::Error) {
+        self.send(self.failed(Cause::Changed(Vec::new()), blind(error).into(), Sources::new()));
     }
 
     fn send(&self, round: Round) {
