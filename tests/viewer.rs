@@ -3,91 +3,26 @@
 #![cfg(feature = "viewer")]
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
+#[path = "viewer/desk.rs"]
+mod desk;
 #[path = "support/project.rs"]
 mod project;
+#[path = "viewer/sequences.rs"]
+mod sequences;
 
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use meniscus::engine::{Gpu, GpuOptions};
 use meniscus::graph::value::Value;
-use meniscus::host::Job;
 use meniscus::viewer::action::Action;
-use meniscus::viewer::core::{Core, Recording, Tick};
+use meniscus::viewer::core::{Recording, Tick};
 use meniscus::viewer::look::{Look, SeenContent};
 
+use desk::{Desk, PATIENCE, SCENE};
 use project::{Project, has_adapter};
 
-const PATIENCE: Duration = Duration::from_secs(60);
-const SIZE: &str = "160x120";
 const SHADER: &str = "shaders/dots/discs.wgsl";
-const SCENE: &str = "scenes/dots.ron";
-
-struct Desk {
-    core: Core,
-    project: Project,
-    shots: u32,
-}
-
-impl Desk {
-    /// Opens what `meniscus new` makes, and waits for the first picture.
-    fn new() -> Self {
-        let project = Project::new();
-        let gpu = Gpu::open(&GpuOptions::default()).unwrap();
-        let job = Job { source: project.path(SCENE), size: Some([160, 120]), ..Job::default() };
-        let mut desk = Self { core: Core::new(gpu, Some(job), || {}).unwrap(), project, shots: 0 };
-        desk.core.want_size([160, 120]);
-        desk.until("the first picture", |core| core.state.frames > 0);
-        desk
-    }
-
-    fn until(&mut self, what: &str, is_so: impl Fn(&Core) -> bool) {
-        let began = Instant::now();
-        while !is_so(&self.core) {
-            assert!(began.elapsed() < PATIENCE, "waited in vain for {what}: {:?}", self.core.state.findings);
-            let tick = self.core.tick(Instant::now());
-            assert!(!tick.is_lost, "the device was lost");
-            std::thread::sleep(Duration::from_millis(1));
-        }
-    }
-
-    /// Lets it work until nothing is left to do.
-    fn rest(&mut self) {
-        let began = Instant::now();
-        while self.core.tick(Instant::now()) != Tick::default() || self.core.state.busy.is_some() {
-            assert!(began.elapsed() < PATIENCE, "it does not come to rest");
-            std::thread::sleep(Duration::from_millis(1));
-        }
-    }
-
-    /// The picture as a file's bytes.
-    fn picture(&mut self) -> Vec<u8> {
-        self.rest();
-        self.shots += 1;
-        let path = self.project.path(&format!("shot{}.png", self.shots));
-        self.core.act(Action::Shoot(path.clone()));
-        self.rest();
-        std::fs::read(path).unwrap()
-    }
-
-    fn fresh(&self) -> Vec<u8> {
-        let fresh = self.project.run(&["render", SCENE, "-o", "fresh.png", "--size", SIZE]);
-        assert_eq!(fresh.code, 0, "{}", fresh.stderr);
-        std::fs::read(self.project.path("fresh.png")).unwrap()
-    }
-
-    /// Edits a file, and waits until that was taken, for good or bad.
-    fn edit(&mut self, name: &str, from: &str, to: &str) {
-        self.rest();
-        let before = self.core.state.reloads.len();
-        self.project.edit(name, from, to);
-        self.until("a reload", |core| core.state.reloads.len() > before);
-    }
-
-    fn notice(&self) -> &str {
-        self.core.state.notice.as_ref().map_or("", |(text, _)| text)
-    }
-}
 
 #[test]
 fn a_broken_shader_keeps_the_picture_and_a_mended_one_shows() {

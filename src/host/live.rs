@@ -159,7 +159,7 @@ impl Session {
     pub fn changes_over_time(&self) -> bool {
         let mut inputs = self.content.iter().flat_map(|content| content.inputs.values());
         let moves = inputs.any(|input| matches!(input, Input::Meshes(meshes) if meshes.info.animated));
-        moves || self.plan().is_some_and(changes_over_time)
+        moves || !self.tracks().is_empty() || self.plan().is_some_and(changes_over_time)
     }
 }
 

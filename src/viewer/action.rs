@@ -41,6 +41,8 @@ pub enum Action {
     /// Reads everything again.
     Reload,
     Play(bool),
+    /// After the last frame of a sequence comes the first.
+    Repeat(bool),
     /// By frames, also back.
     Step(i64),
     /// To a time in seconds.

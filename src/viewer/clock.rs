@@ -78,13 +78,26 @@ impl Default for Clock {
 impl Clock {
     /// The number of the frame at the time.
     pub fn frame(&self) -> u64 {
-        let frame = self.beat.first.saturating_add((self.time_s * self.beat.rate + 1e-6).floor().max(0.0) as u64);
+        self.frame_at(self.time_s)
+    }
+
+    pub fn frame_at(&self, time_s: f64) -> u64 {
+        let frame = self.beat.first.saturating_add((time_s * self.beat.rate + 1e-6).floor().max(0.0) as u64);
         self.beat.last.map_or(frame, |last| frame.min(last.max(self.beat.first)))
     }
 
     /// When a frame is.
     pub fn time_of(&self, frame: u64) -> f64 {
         frame.saturating_sub(self.beat.first) as f64 / self.beat.rate
+    }
+
+    /// The number of the frame that sequences show then.
+    pub fn frame_of(&self, when: When) -> u64 {
+        match when {
+            When::Start => self.beat.first,
+            When::Frame(frame) => frame,
+            When::Time(time_s) => self.frame_at(time_s),
+        }
     }
 
     /// What sequences show at the time: the same as `render --frame` with this number.
@@ -130,7 +143,8 @@ impl Clock {
             return;
         }
         let wanted = real_s * self.speed;
-        let longest = if self.beat.last.is_some() { 1.0 / self.beat.rate } else { LONGEST_DELTA_S * self.speed.max(1.0) };
+        let longest =
+            if self.beat.last.is_some() { 1.0 / self.beat.rate } else { LONGEST_DELTA_S * self.speed.max(1.0) };
         self.delta_s = wanted.min(longest);
         let now = if self.delta_s > 0.0 { wanted / self.delta_s } else { 1.0 };
         self.slowdown += (now - self.slowdown) * 0.2;

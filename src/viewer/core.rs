@@ -18,7 +18,7 @@ use super::viewpoints;
 use super::worker::{Wants, Worker};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics, Sources};
 use crate::engine::{Gpu, Screen, any_device_gone};
-use crate::host::{Job, Session};
+use crate::host::{Input, Job, Session, When};
 use crate::plan::model::Plan;
 
 pub use look::Hunt;
@@ -61,6 +61,10 @@ pub struct Core {
     in_flight: Option<InFlight>,
     /// When time was advanced last.
     advanced: Option<Instant>,
+    /// The frame of sequences that the last round showed.
+    answered: When,
+    /// The last time whose frame of sequences was there.
+    fed_s: f64,
     /// The first picture after a reload is on its way.
     reload_pending: bool,
     screen_changed: bool,
@@ -101,6 +105,8 @@ impl Core {
             version: 0,
             in_flight: None,
             advanced: None,
+            answered: When::Start,
+            fed_s: 0.0,
             reload_pending: false,
             screen_changed: false,
             is_lost: false,
@@ -139,6 +145,16 @@ impl Core {
         self.serial
     }
 
+    /// Inputs of particles that are shown, with how many there are.
+    pub fn particles(&self) -> Vec<(&str, usize)> {
+        let inputs = self.session.content().into_iter().flat_map(|content| &content.inputs);
+        let of_particles = inputs.filter_map(|(name, input)| match input {
+            Input::Particles(particles) => Some((name.as_str(), particles.set.count)),
+            _ => None,
+        });
+        of_particles.collect()
+    }
+
     /// Whether a frame is being drawn.
     pub fn is_drawing(&self) -> bool {
         self.in_flight.is_some()
@@ -151,7 +167,9 @@ impl Core {
         (self.state.camera, self.state.home) = (None, None);
         (self.state.look, self.state.recording, self.state.hunt) = (None, None, None);
         self.state.viewpoints = viewpoints::load(&job.source);
-        self.state.clock = super::clock::Clock::default();
+        let repeats = self.state.clock.repeats;
+        self.state.clock = super::clock::Clock { repeats, ..super::clock::Clock::default() };
+        (self.answered, self.fed_s) = (When::Start, 0.0);
         self.reopen(job);
     }
 
@@ -170,6 +188,10 @@ impl Core {
     pub fn want_size(&mut self, size: [u32; 2]) {
         let fixed = self.state.job.as_ref().and_then(|job| job.size);
         let wanted = Some(fixed.unwrap_or(size));
+        if self.state.recording.is_some() && self.opening.is_none() {
+            // All pictures of a sequence have one size, whatever panels open meanwhile.
+            return;
+        }
         if self.wants.viewport != wanted {
             // The first size is not waited for.
             self.resized = self.wants.viewport.map(|_| Instant::now());
@@ -195,20 +217,22 @@ impl Core {
             tick.repaint = true;
         }
         tick.repaint |= self.look_after_frame();
-        self.send_wants(now, &mut tick);
         if self.in_flight.is_none() && !self.is_lost {
             self.advance(now);
+        }
+        self.send_wants(now, &mut tick);
+        if self.in_flight.is_none() && !self.is_lost {
             tick.repaint |= self.draw_if_changed();
         }
-        if self.in_flight.is_none() && !self.is_lost && self.made.is_some() {
+        // Before a frame of a sequence is there nothing is written or read: the worker wakes the window.
+        if self.in_flight.is_none() && !self.is_lost && self.made.is_some() && self.is_fed() {
             tick.repaint |= self.at_rest();
         }
-        if self.state.hunt.is_some() || self.state.recording.is_some() {
-            tick.again = Some(Duration::ZERO);
-        }
+        let goes_on = self.state.hunt.is_some() || self.state.recording.is_some();
+        let plays = self.state.clock.is_playing && self.session.plan().is_some();
         if self.in_flight.is_some() {
             tick.again = Some(tick.again.map_or(POLL, |again| again.min(POLL)));
-        } else if self.state.clock.is_playing && self.session.plan().is_some() {
+        } else if (goes_on || plays) && self.is_fed() {
             tick.again = Some(Duration::ZERO);
         }
         tick.is_lost = self.is_lost;
@@ -233,6 +257,9 @@ impl Core {
     fn send_wants(&mut self, now: Instant, tick: &mut Tick) {
         self.wants.params.clone_from(&self.state.overrides);
         let looked_at = self.state.look.iter().map(|look| look.path.clone());
+        if !self.is_fed() {
+            self.wants.when = self.state.clock.when();
+        }
         self.wants.roots = looked_at.filter(|path| self.can_be_root(path)).collect();
         if self.wants == self.sent {
             return;

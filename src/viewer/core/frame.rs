@@ -33,6 +33,10 @@ pub(super) struct InFlight {
 
 impl Core {
     pub(super) fn advance(&mut self, now: Instant) {
+        if !self.is_fed() {
+            // Time waits for the frame of a sequence: none is left out.
+            return;
+        }
         let real_s = self.advanced.map_or(0.0, |before| now.saturating_duration_since(before).as_secs_f64());
         self.advanced = self.state.clock.is_playing.then_some(now);
         if self.state.changes_over_time {
@@ -40,6 +44,12 @@ impl Core {
         } else {
             self.state.clock.is_playing = false;
         }
+    }
+
+    /// Whether the frames of sequences at the clock's time are there.
+    pub(super) fn is_fed(&self) -> bool {
+        let clock = &self.state.clock;
+        clock.frame_of(self.answered) == clock.frame() || clock.beat.last.is_none()
     }
 
     pub(super) fn only(&self) -> Option<Vec<bool>> {
@@ -51,7 +61,12 @@ impl Core {
     /// Draws a frame if it would differ from the last one. Tells whether errors came up.
     pub(super) fn draw_if_changed(&mut self) -> bool {
         let (Some(camera), Some(_)) = (self.state.camera, self.session.content()) else { return false };
-        let made = Made { camera, time_s: self.state.clock.time_s, only: self.only(), version: self.version };
+        let is_fed = self.is_fed();
+        if is_fed {
+            self.fed_s = self.state.clock.time_s;
+        }
+        // Else the frame that is there is drawn on, as the camera moves.
+        let made = Made { camera, time_s: self.fed_s, only: self.only(), version: self.version };
         let is_new = self.stepped_s != Some(made.time_s);
         let mut due = self.session.steps_due(made.time_s, is_new, MOST_STEPS[0]);
         let catches_up = due.steps.iter().any(|steps| *steps > 0) || due.needs_reset;
@@ -69,8 +84,8 @@ impl Core {
         let live = Live {
             camera,
             time_s: made.time_s,
-            delta_s: self.state.clock.delta_s,
-            frame: self.state.clock.frame(),
+            delta_s: if is_fed { self.state.clock.delta_s } else { 0.0 },
+            frame: self.state.clock.frame_at(made.time_s),
             steps: &due.steps,
             only: made.only.as_deref(),
         };

@@ -49,8 +49,7 @@ impl Core {
     /// Runs chosen passes; the next frame runs all again.
     fn run_only(&mut self, only: &[bool]) -> Result<(), String> {
         let camera = self.state.camera.ok_or("there is no camera yet")?;
-        let clock = &self.state.clock;
-        let (time_s, frame) = (clock.time_s, clock.frame());
+        let (time_s, frame) = (self.fed_s, self.state.clock.frame_at(self.fed_s));
         let live = Live { camera, time_s, delta_s: 0.0, frame, steps: &[], only: Some(only) };
         self.is_part = true;
         let ran = self.session.run_part(&live).map_err(|found| first(&found));

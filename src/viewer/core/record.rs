@@ -6,7 +6,6 @@ use super::Core;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::host::picture::{PictureKind, numbered};
 use crate::output::Output;
-use crate::viewer::clock::FRAMES_PER_SECOND;
 use crate::viewer::state::short;
 
 /// A sequence that is being written.
@@ -51,7 +50,8 @@ impl Core {
             return;
         }
         self.state.clock.is_playing = false;
-        self.state.clock.seek(recording.from as f64 / FRAMES_PER_SECOND);
+        let from_s = self.state.clock.time_of(recording.from);
+        self.state.clock.seek(from_s);
         self.state.recording = Some(recording);
     }
 
@@ -61,14 +61,23 @@ impl Core {
         let Some(mut recording) = self.state.recording.take() else { return false };
         if self.state.clock.frame() != recording.next {
             // Somebody moved the time: the sequence decides.
-            self.state.clock.seek(recording.next as f64 / FRAMES_PER_SECOND);
-            self.state.recording = Some(recording);
+            let next_s = self.state.clock.time_of(recording.next);
+            self.state.clock.seek(next_s);
+            if self.state.clock.frame() == recording.next {
+                self.state.recording = Some(recording);
+            } else {
+                self.ended(&recording, &format!("the sequence ends at frame {}", self.state.clock.frame()));
+            }
+            return true;
+        }
+        if let Some(findings) = self.state.findings.as_ref().filter(|findings| findings.is_stale) {
+            let why = findings.diagnostics.iter().next().map(|found| found.message.clone());
+            self.ended(&recording, &why.unwrap_or_else(|| "the picture is of an earlier state".into()));
             return true;
         }
         let path = numbered(&recording.path, recording.next);
         if let Err(error) = self.write_picture(&path) {
-            let done = recording.next - recording.from;
-            self.state.say(format!("recording ended after {done} pictures: {}", error.message));
+            self.ended(&recording, &error.message);
             return true;
         }
         recording.next += 1;
@@ -80,6 +89,11 @@ impl Core {
             self.state.recording = Some(recording);
         }
         true
+    }
+
+    fn ended(&mut self, recording: &Recording, why: &str) {
+        let done = recording.next - recording.from;
+        self.state.say(format!("recording ended after {done} pictures: {why}"));
     }
 }
 

@@ -6,6 +6,7 @@ use super::Core;
 use crate::diagnostic::Severity;
 use crate::engine::any_device_gone;
 use crate::host::{Built, Content, Input};
+use crate::viewer::clock::Beat;
 use crate::viewer::params::{self, groups};
 use crate::viewer::state::{Findings, Reload, bounds, listed, short};
 use crate::viewer::worker::{Cause, Round};
@@ -13,7 +14,8 @@ use crate::viewer::worker::{Cause, Round};
 impl Core {
     pub(super) fn take(&mut self, round: Round) {
         self.state.busy = None;
-        let Round { cause, planned, read, mut diagnostics, sources, noticing, checking, building } = round;
+        let Round { cause, planned, read, mut diagnostics, sources, when, noticing, checking, building } = round;
+        self.answered = when;
         if let Some(read) = &read {
             self.take_content(read);
         }
@@ -65,7 +67,6 @@ impl Core {
         let present = content.present_params.iter().map(|(path, v)| (format!("{}{path}", params::PRESENT), v.clone()));
         let own = content.params.iter().map(|(path, v)| (path.clone(), v.clone()));
         self.state.in_scene = own.chain(present).collect();
-        self.state.bounds = bounds(content);
         let home = self.state.home.replace(content.camera);
         // A camera that was not moved by hand follows the scene's.
         if self.state.camera.is_none() || self.state.camera == home {
@@ -77,6 +78,8 @@ impl Core {
         self.version += 1;
         self.state.memory_bytes = built.memory_bytes;
         self.state.changes_over_time = self.session.changes_over_time();
+        self.state.clock.follow(Beat::of(self.session.tracks().first()));
+        self.state.bounds = self.session.content().and_then(bounds);
         let mut inputs = self.session.content().into_iter().flat_map(|content| content.inputs.values());
         self.state.takes_pointer = inputs.any(|input| matches!(input, Input::Pointer(_)));
         if let Some(plan) = self.session.plan() {

@@ -23,8 +23,11 @@ impl Form {
         let job = core.state.job.as_ref();
         let stem = job.and_then(|job| Some(job.source.file_stem()?.to_string_lossy().into_owned()));
         self.path = free_name(stem.as_deref().unwrap_or("picture"), "png").display().to_string();
-        self.from = core.state.clock.frame();
-        self.to = self.from + 59;
+        let clock = &core.state.clock;
+        (self.from, self.to) = match clock.beat.last {
+            Some(last) => (clock.beat.first, last),
+            None => (clock.frame(), clock.frame() + 59),
+        };
     }
 }
 
@@ -58,7 +61,7 @@ pub fn draw(ui: &mut Ui, core: &Core, layout: &mut Layout, actions: &mut Vec<Act
                     ui.add(DragValue::new(&mut form.from));
                     ui.label("to");
                     ui.add(DragValue::new(&mut form.to));
-                    ui.weak("60 a second");
+                    ui.weak(format!("{} a second", core.state.clock.beat.rate));
                     if ui.button("Record").clicked() {
                         let path = PathBuf::from(form.path.trim());
                         let (from, to) = (form.from, form.to);

@@ -18,7 +18,8 @@ pub fn draw(ui: &mut Ui, core: &Core) {
                 ui.weak(&state.device);
             }
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                if let Some(since) = state.busy {
+                // What takes no time to be seen is not told.
+                if let Some(since) = state.busy.filter(|since| since.elapsed() >= SEEN) {
                     ui.label(
                         RichText::new(format!("building {:.1} s", since.elapsed().as_secs_f64())).color(theme::WARN),
                     );
@@ -43,6 +44,9 @@ pub fn draw(ui: &mut Ui, core: &Core) {
         });
     });
 }
+
+/// The worker is told to be at work after this.
+const SEEN: std::time::Duration = std::time::Duration::from_millis(150);
 
 /// A size that people read.
 pub fn bytes(bytes: u64) -> String {
