@@ -14,6 +14,7 @@ pub mod format;
 pub mod graph;
 pub mod host;
 mod output;
+mod parallel;
 pub mod plan;
 pub mod program;
 pub mod reload;

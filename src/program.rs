@@ -11,7 +11,8 @@ use crate::diagnostic::{Code, Diagnostic, Diagnostics, FileId, Sources, Span};
 use crate::files::{self, Files, Kind, NotFound};
 use crate::graph::expr::Expr;
 use crate::graph::model::{Graph, Name, Node, NodeKind};
-use crate::shader;
+use crate::parallel::in_parallel;
+use crate::shader::Gathered;
 use crate::shader::reflect::Module;
 
 /// A graph with its parts and shaders, all read without error.
@@ -20,19 +21,21 @@ pub struct Program {
     pub root: Arc<Graph>,
     graphs: BTreeMap<PathBuf, Arc<Graph>>,
     shaders: BTreeMap<PathBuf, Arc<Module>>,
-    /// (the naming graph, the name as written) to the file that was taken.
-    links: BTreeMap<(PathBuf, String), PathBuf>,
+    links: Links,
 }
+
+/// By the naming graph, by the name as written: the file that was taken.
+type Links = BTreeMap<PathBuf, BTreeMap<String, PathBuf>>;
 
 impl Program {
     /// The part that `graph` names so.
     pub fn part(&self, graph: &Graph, name: &str) -> Option<&Arc<Graph>> {
-        self.graphs.get(self.links.get(&(graph.path.clone(), name.to_owned()))?)
+        self.graphs.get(self.links.get(&graph.path)?.get(name)?)
     }
 
     /// The shader that `graph` names so.
     pub fn shader(&self, graph: &Graph, name: &str) -> Option<&Arc<Module>> {
-        self.shaders.get(self.links.get(&(graph.path.clone(), name.to_owned()))?)
+        self.shaders.get(self.links.get(&graph.path)?.get(name)?)
     }
 
     /// All graphs, the root among them, by file.
@@ -93,7 +96,7 @@ impl Program {
 
     /// Each name as written and the file that was taken for it.
     pub fn taken(&self) -> BTreeMap<String, PathBuf> {
-        self.links.iter().map(|((_, name), path)| (name.clone(), path.clone())).collect()
+        self.links.values().flatten().map(|(name, path)| (name.clone(), path.clone())).collect()
     }
 }
 
@@ -117,9 +120,11 @@ pub fn load(files: &dyn Files, sources: &mut Sources, name: &str, beside: Option
         graphs: BTreeMap::new(),
         shaders: BTreeMap::new(),
         links: BTreeMap::new(),
+        gathered: Vec::new(),
         stack: Vec::new(),
     };
     let root = loader.find(Kind::Graph, name, beside, None).and_then(|(path, bytes)| loader.graph(path, &bytes));
+    loader.parse();
     let Loader { diagnostics, mut read, graphs, shaders, links, .. } = loader;
     read.sort();
     read.dedup();
@@ -143,7 +148,9 @@ struct Loader<'a> {
     /// `None` for what was tried and had errors.
     graphs: BTreeMap<PathBuf, Option<Arc<Graph>>>,
     shaders: BTreeMap<PathBuf, Option<Arc<Module>>>,
-    links: BTreeMap<(PathBuf, String), PathBuf>,
+    links: Links,
+    /// Shaders with their imports, in the order in which they were named, still to be parsed.
+    gathered: Vec<(PathBuf, Gathered)>,
     /// Graphs being read, each with the place that named it: a name that is on it is a cycle.
     stack: Vec<(PathBuf, Option<Span>)>,
 }
@@ -198,14 +205,13 @@ impl Loader<'_> {
     }
 
     fn part(&mut self, graph: &Graph, name: &Name) {
-        let key = (graph.path.clone(), name.value.clone());
-        if self.links.contains_key(&key) {
+        if self.links.get(&graph.path).is_some_and(|links| links.contains_key(&name.value)) {
             return;
         }
         let Some((path, bytes)) = self.find(Kind::Graph, &name.value, Some(&graph.path), Some(name.span)) else {
             return;
         };
-        self.links.insert(key, path.clone());
+        self.link(graph, name, &path);
         if let Some(from) = self.stack.iter().position(|(open, _)| *open == path) {
             self.diagnostics.push(include_cycle(&self.stack[from..], &path, name.span));
             return;
@@ -216,8 +222,7 @@ impl Loader<'_> {
     }
 
     fn shader(&mut self, graph: &Graph, name: &Name) {
-        let key = (graph.path.clone(), name.value.clone());
-        if self.links.contains_key(&key) {
+        if self.links.get(&graph.path).is_some_and(|links| links.contains_key(&name.value)) {
             return;
         }
         let path = match files::find(self.files, Kind::Shader, &name.value, Some(&graph.path)) {
@@ -228,14 +233,26 @@ impl Loader<'_> {
                 return;
             }
         };
-        self.links.insert(key, path.clone());
-        if self.shaders.contains_key(&path) {
-            return;
+        self.link(graph, name, &path);
+        if self.gathered.iter().all(|(known, _)| *known != path) {
+            self.gathered.push((path, Gathered::new(self.files, self.sources, &name.value, Some(&graph.path))));
         }
-        let loaded = shader::load(self.files, self.sources, &name.value, Some(&graph.path));
-        self.diagnostics.extend(loaded.diagnostics);
-        self.read.extend(loaded.read);
-        self.shaders.insert(path, loaded.module.map(Arc::new));
+    }
+
+    fn link(&mut self, graph: &Graph, name: &Name, path: &Path) {
+        self.links.entry(graph.path.clone()).or_default().insert(name.value.clone(), path.to_owned());
+    }
+
+    /// Parses all shaders, on all processors: that takes most of the time of loading.
+    fn parse(&mut self) {
+        let (paths, gathered): (Vec<_>, Vec<_>) = std::mem::take(&mut self.gathered).into_iter().unzip();
+        let parsed = in_parallel(&gathered, &Gathered::parse);
+        for ((path, gathered), parsed) in paths.into_iter().zip(gathered).zip(parsed) {
+            let loaded = gathered.finish(parsed);
+            self.diagnostics.extend(loaded.diagnostics);
+            self.read.extend(loaded.read);
+            self.shaders.insert(path, loaded.module.map(Arc::new));
+        }
     }
 
     fn text(&mut self, path: &Path, bytes: &[u8]) -> Option<FileId> {

@@ -89,7 +89,7 @@ impl Inspector<'_> {
             .collect()
     }
 
-    fn entries(&self) -> Vec<Entry> {
+    fn entries(&self) -> Vec<Arc<Entry>> {
         let file = self.map().named().file;
         let points = self.parsed.module.entry_points.iter().enumerate();
         points
@@ -101,7 +101,7 @@ impl Inspector<'_> {
                     ShaderStage::Compute => Stage::Compute,
                     _ => return None,
                 };
-                (declared.name.file == file).then(|| self.entry(index, point, stage, declared))
+                (declared.name.file == file).then(|| Arc::new(self.entry(index, point, stage, declared)))
             })
             .collect()
     }

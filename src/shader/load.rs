@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::reflect::Module;
 use super::{assemble, inspect, parse};
-use crate::diagnostic::{Diagnostics, Sources};
+use crate::diagnostic::{Diagnostic, Diagnostics, Sources};
 use crate::files::Files;
 
 /// What came of loading a shader.
@@ -24,13 +24,35 @@ pub struct Loaded {
 /// If the named file itself is missing or unreadable, the diagnostic has no label: the caller
 /// knows where the name stands.
 pub fn load(files: &dyn Files, sources: &mut Sources, name: &str, beside: Option<&Path>) -> Loaded {
-    let assemble::Outcome { assembled, mut diagnostics, read } = assemble::assemble(files, sources, name, beside);
-    let module = assembled.and_then(|assembled| match parse::parse(&assembled) {
-        Ok(parsed) => Some(inspect::inspect(assembled, parsed)),
-        Err(diagnostic) => {
-            diagnostics.push(*diagnostic);
-            None
-        }
-    });
-    Loaded { module, diagnostics, read }
+    let gathered = Gathered::new(files, sources, name, beside);
+    let parsed = gathered.parse();
+    gathered.finish(parsed)
+}
+
+/// A shader with its imports, of which many may be parsed at once.
+pub(crate) struct Gathered(assemble::Outcome);
+
+/// What parsing gave; nothing if there was no whole text.
+pub(crate) struct Parsed(Option<Result<parse::Parsed, Box<Diagnostic>>>);
+
+impl Gathered {
+    pub fn new(files: &dyn Files, sources: &mut Sources, name: &str, beside: Option<&Path>) -> Self {
+        Self(assemble::assemble(files, sources, name, beside))
+    }
+
+    pub fn parse(&self) -> Parsed {
+        Parsed(self.0.assembled.as_ref().map(parse::parse))
+    }
+
+    pub fn finish(self, parsed: Parsed) -> Loaded {
+        let assemble::Outcome { assembled, mut diagnostics, read } = self.0;
+        let module = assembled.zip(parsed.0).and_then(|(assembled, parsed)| match parsed {
+            Ok(parsed) => Some(inspect::inspect(assembled, parsed)),
+            Err(diagnostic) => {
+                diagnostics.push(*diagnostic);
+                None
+            }
+        });
+        Loaded { module, diagnostics, read }
+    }
 }

@@ -23,5 +23,6 @@ mod scan;
 mod types;
 mod walk;
 
+pub(crate) use load::Gathered;
 pub use load::{Loaded, load};
 pub use map::SourceMap;

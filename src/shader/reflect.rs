@@ -22,7 +22,7 @@ pub struct Module {
     pub info: Arc<naga::valid::ModuleInfo>,
     pub globals: Vec<Global>,
     /// Entry points of the named file only.
-    pub entries: Vec<Entry>,
+    pub entries: Vec<Arc<Entry>>,
     pub overrides: Vec<Override>,
     /// Where places in naga's module lie in the files.
     pub map: Arc<SourceMap>,
@@ -249,7 +249,7 @@ impl Scalar {
 
 impl Module {
     /// The entry points of a stage.
-    pub fn stage(&self, stage: Stage) -> impl Iterator<Item = &Entry> {
+    pub fn stage(&self, stage: Stage) -> impl Iterator<Item = &Arc<Entry>> {
         self.entries.iter().filter(move |e| e.stage == stage)
     }
 

@@ -127,6 +127,31 @@ fn a_counter_is_a_number_in_each_iteration() {
 }
 
 #[test]
+fn what_a_part_makes_of_a_counter_is_worked_out_in_each_iteration() {
+    let part = r#"Graph(
+        params: { "n": Int(default: 0, min: 0, max: 100) },
+        let: { "square": "n * n" },
+        passes: [],
+        outputs: { "squared": "square" },
+    )"#;
+    let graph = r#"Graph(
+        resources: { "a": Buffer(items: 8), "b": Buffer(items: "steady") },
+        let: { "steady": "2 * 4", "sum": "part.squared + steady" },
+        passes: [
+            Repeat(times: 4, index: "i", passes: [
+                Use(graph: "part.ron", name: "part", params: {"n": "i + 1"}),
+                Compute(name: "turn", shader: "constant.wgsl", each: Item("a"), bind: {"dst": "a", "n": "sum"}),
+            ]),
+            Compute(name: "copy", shader: "copy.wgsl", each: Item("b"), bind: {"src": "a", "dst": "b"}),
+        ],
+        outputs: ["b"],
+    )"#;
+    let plan = Test::new(graph).with("graphs/part.ron", part).plan();
+    assert_eq!(paths(&plan), ["turn[3]", "copy"]);
+    assert_eq!(shader(&plan, 0).constants, [("n".to_owned(), 24.0)], "4 * 4 + 8");
+}
+
+#[test]
 fn loops_in_loops_are_numbered_from_outside_in() {
     let passes = r#"
         Clear(name: "zero", of: "a"),

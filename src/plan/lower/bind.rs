@@ -20,7 +20,7 @@ use crate::shader::reflect::{Entry, Global, GlobalKind, Module, TextureDimension
 #[derive(Clone)]
 pub(super) struct Stages {
     pub module: Arc<Module>,
-    pub entries: Vec<(ShaderStages, Entry)>,
+    pub entries: Vec<(ShaderStages, Arc<Entry>)>,
     /// The pass, for labels.
     pub at: Span,
     /// The mesh input whose materials it is drawn with.

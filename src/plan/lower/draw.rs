@@ -41,12 +41,12 @@ impl Lowering<'_> {
         let shader = self.feed(s, &stages, &draw.bind, &mut draft);
         let geometry = match &stages.meshes {
             _ if fullscreen => Geometry::Fullscreen,
-            Some(meshes) => self.mesh_geometry(s, meshes, draw, vertex.as_ref(), &stages, &mut draft)?,
+            Some(meshes) => self.mesh_geometry(s, meshes, draw, vertex.as_deref(), &stages, &mut draft)?,
             None => self.geometry(s, draw, node.word, &mut draft)?,
         };
         let covers = fullscreen && draw.region.is_none() && !fragment.as_ref().is_some_and(|f| f.discards);
-        let color = self.targets(s, draw, fragment.as_ref(), covers, node.word, &mut draft);
-        let depth = self.depth(s, draw, fragment.as_ref(), node.word, &mut draft);
+        let color = self.targets(s, draw, fragment.as_deref(), covers, node.word, &mut draft);
+        let depth = self.depth(s, draw, fragment.as_deref(), node.word, &mut draft);
         let (color, depth) = match (color, depth) {
             (Err(color), Err(depth)) => {
                 self.diagnostics.push(*color);
@@ -183,7 +183,7 @@ impl Lowering<'_> {
         }
         let access = Access { object, mips: 0..1, layers: 0..1, read: true, write: false, whole: false };
         draft.accesses.push((access, Place::at(name.span, &name.value, false)));
-        draft.causes.add(&self.object(object).causes.clone());
+        draft.causes.add(&self.object(object).causes);
         Ok(())
     }
 

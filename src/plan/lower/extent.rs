@@ -1,5 +1,7 @@
 //! How much a pass does: workgroups from threads, items and texels, also where only the GPU knows.
 
+use std::sync::Arc;
+
 use wgpu_types::{BufferUsages, ShaderStages};
 
 use super::bind::Stages;
@@ -169,7 +171,7 @@ impl Lowering<'_> {
         if let Entity::Var(var) = entity {
             let object = self.vars[var].now;
             let building = self.object(object);
-            draft.causes.add(&building.causes.clone());
+            draft.causes.add(&building.causes);
             if let ObjectKind::Buffer(buffer) = &building.object.kind {
                 return Ok(if buffer.counted {
                     Items::Counted(object, buffer.items)
@@ -225,7 +227,7 @@ impl Lowering<'_> {
         }
     }
 
-    pub(super) fn shader_module(&self, s: ScopeId, shader: &ShaderRef) -> Result<std::sync::Arc<Module>> {
+    pub(super) fn shader_module(&self, s: ScopeId, shader: &ShaderRef) -> Result<Arc<Module>> {
         let graph = &self.scopes[s].graph;
         match self.program.shader(graph, &shader.path.value) {
             Some(module) => Ok(module.clone()),
@@ -244,10 +246,10 @@ impl Lowering<'_> {
         shader: &ShaderRef,
         stage: Stage,
         required: bool,
-    ) -> Result<Option<Entry>> {
+    ) -> Result<Option<Arc<Entry>>> {
         let what = stage_name(stage);
-        let all: Vec<&Entry> = module.stage(stage).collect();
-        let named = |e: &&&Entry| shader.entries.iter().any(|n| n.value == e.name);
+        let all: Vec<&Arc<Entry>> = module.stage(stage).collect();
+        let named = |e: &&&Arc<Entry>| shader.entries.iter().any(|n| n.value == e.name);
         for name in &shader.entries {
             if !module.entries.iter().any(|e| e.name == name.value) {
                 let names: Vec<String> = module.entries.iter().map(|e| e.name.clone()).collect();
@@ -258,10 +260,10 @@ impl Lowering<'_> {
                 return Err(traced(diagnostic, &self.scopes[s].trace));
             }
         }
-        let chosen: Vec<&&Entry> =
+        let chosen: Vec<&&Arc<Entry>> =
             if shader.entries.is_empty() { all.iter().collect() } else { all.iter().filter(named).collect() };
         match chosen.as_slice() {
-            [one] => Ok(Some((**one).clone())),
+            [one] => Ok(Some(Arc::clone(one))),
             [] if !required => Ok(None),
             [] => {
                 let message = format!("`{}` has no {what} entry point", shader.path.value);

@@ -8,7 +8,7 @@ use crate::graph::model::{Attribute, Input, InputKind, Param, ViewDimension};
 use crate::graph::value::Value;
 use crate::plan::fields;
 use crate::plan::meshes::MeshBuffer;
-use crate::plan::model::{Causes, InputInfo, Object, ObjectKind, Origin, Texture, UniformValue};
+use crate::plan::model::{Causes, InputInfo, Object, ObjectKind, Origin, Texture};
 
 impl Lowering<'_> {
     /// What an input, or a field of it, stands for: the thing outside that feeds it.
@@ -111,7 +111,8 @@ impl Lowering<'_> {
         let input = &graph.inputs[i];
         self.used.insert(input.name.span);
         let name = input.name.value.clone();
-        let info = self.request.inputs.get(&name).cloned();
+        let request = self.request;
+        let info = request.inputs.get(&name);
         if let InputKind::Meshes { values } = &input.kind
             && (info.is_some() || input.optional)
         {
@@ -168,7 +169,7 @@ impl Lowering<'_> {
         s: ScopeId,
         i: usize,
         declared: &[Attribute],
-        info: Option<InputInfo>,
+        info: Option<&InputInfo>,
         field: Option<&str>,
         span: Span,
     ) -> Result<Entity> {
@@ -183,10 +184,10 @@ impl Lowering<'_> {
         };
         let Some(field) = field else { return Ok(Entity::Input { root: name, kind: input.kind.clone() }) };
         let value = match field {
-            "count" => Value::Int(i64::try_from(count).unwrap_or(i64::MAX)),
-            "radius" => Value::Float(radius),
-            "min" => Value::vec(min),
-            "max" => Value::vec(max),
+            "count" => Value::Int(i64::try_from(*count).unwrap_or(i64::MAX)),
+            "radius" => Value::Float(*radius),
+            "min" => Value::vec(*min),
+            "max" => Value::vec(*max),
             attribute => {
                 let Some(declaration) = declared.iter().find(|a| a.name.value == attribute) else {
                     return Err(self.unknown_field(s, &name, field, fields::PARTICLES, span));
@@ -199,15 +200,15 @@ impl Lowering<'_> {
                         .hint(format!("they have {}; `\"{attribute}?\"` makes it optional", list(&names)));
                     return Err(Box::new(diagnostic));
                 }
-                return Ok(Entity::Var(self.attribute_var(&name, attribute, count, present.is_some(), input.span)));
+                return Ok(Entity::Var(self.attribute_var(&name, attribute, *count, present.is_some(), input.span)));
             }
         };
         let causes = Causes { inputs: [name].into(), ..Causes::default() };
-        Ok(Entity::Scalar(Scalar { value: UniformValue::Known(value), causes }))
+        Ok(Entity::Scalar(Scalar::caused(value, causes)))
     }
 
     /// The variable of a root input that is memory: texture, buffer, counted, table.
-    pub(super) fn input_var(&mut self, name: &str, i: usize, info: Option<InputInfo>) -> Result<VarId> {
+    pub(super) fn input_var(&mut self, name: &str, i: usize, info: Option<&InputInfo>) -> Result<VarId> {
         if let Some(var) = self.input_vars.get(name) {
             return Ok(*var);
         }
@@ -215,14 +216,14 @@ impl Lowering<'_> {
         let input = &graph.inputs[i];
         let counted = matches!(input.kind, InputKind::Counted);
         let kind = match (&input.kind, info) {
-            (InputKind::Texture { .. }, Some(InputInfo::Texture(texture))) => ObjectKind::Texture(texture),
+            (InputKind::Texture { .. }, Some(InputInfo::Texture(texture))) => ObjectKind::Texture(texture.clone()),
             (InputKind::Texture { dimension }, None) if self.stand_in => {
                 ObjectKind::Texture(stand_in_texture(dimension.as_ref().map(|d| d.value)))
             }
             (InputKind::Buffer | InputKind::Counted, Some(InputInfo::Buffer { items, stride })) => {
-                let mut kind = buffer(items, counted);
+                let mut kind = buffer(*items, counted);
                 if let ObjectKind::Buffer(b) = &mut kind {
-                    b.stride = stride;
+                    b.stride = *stride;
                 }
                 kind
             }

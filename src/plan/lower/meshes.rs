@@ -16,9 +16,7 @@ use crate::plan::meshes::{
     MATERIAL, MATERIAL_ALIGNMENT, MaterialTexture, MeshBuffer, MeshDraw, MeshGeometry, MeshesInfo, VertexAttribute,
     VertexBuffer, instance_type,
 };
-use crate::plan::model::{
-    Access, Bound, Buffer, Causes, Geometry, InputInfo, Object, ObjectKind, ObjectRef, Origin, UniformValue,
-};
+use crate::plan::model::{Access, Bound, Buffer, Causes, Geometry, InputInfo, Object, ObjectKind, ObjectRef, Origin};
 use crate::shader::reflect::{Entry, Global, GlobalKind, TextureDimension, Type};
 
 /// The meshes that a draw shows.
@@ -68,7 +66,7 @@ impl Lowering<'_> {
             _ => None,
         };
         if let Some(value) = scalar {
-            return Ok(Entity::Scalar(Scalar { value: UniformValue::Known(value), causes }));
+            return Ok(Entity::Scalar(Scalar::caused(value, causes)));
         }
         if let Some((_, buffer)) = MeshBuffer::NAMED.iter().find(|(name, _)| *name == field) {
             return Ok(Entity::Var(self.mesh_var(root, &info, buffer.clone(), span)));
@@ -98,7 +96,7 @@ impl Lowering<'_> {
         for body in 0..info.bodies as usize {
             match given.and_then(|all| all.get(body)).and_then(Option::as_ref) {
                 Some(found) => {
-                    let scalar = Scalar { value: UniformValue::Known(found.clone()), causes: Causes::default() };
+                    let scalar = Scalar::known(found.clone());
                     self.fit(scalar, value, value.name.span)?;
                 }
                 None if value.default.is_none() => {
@@ -231,7 +229,7 @@ impl Lowering<'_> {
         self.buffer_usage(object, usage);
         let access = Access { object, mips: 0..1, layers: 0..1, read: true, write: false, whole: false };
         draft.accesses.push((access, Place::at(meshes.name.span, &meshes.name.value, false)));
-        draft.causes.add(&self.object(object).causes.clone());
+        draft.causes.add(&self.object(object).causes);
         object
     }
 

@@ -96,6 +96,10 @@ pub(super) struct Scope {
     /// Parameters that the `Use` gave.
     pub given: BTreeMap<String, (Scalar, Span)>,
     pub counters: Vec<(String, i64)>,
+    /// Paths of two names that WGSL names of it could be.
+    dotted: HashMap<String, Arc<[String]>>,
+    /// What it was given depends on a counter of a loop outside.
+    pub given_counts: bool,
     pub children: BTreeMap<String, ScopeId>,
     pub resources: Vec<Option<VarId>>,
     /// What feeds it does not fit, and that was said: its passes are left out.
@@ -107,14 +111,18 @@ pub(super) struct Scope {
 enum LetState {
     Waiting,
     Evaluating,
-    Known(Scalar),
+    Known {
+        scalar: Scalar,
+        /// It may be another one in a loop's next iteration.
+        counts: bool,
+    },
 }
 
 /// A value of the scalar language with what it depends on.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Scalar {
     pub value: model::UniformValue,
-    pub causes: Causes,
+    pub causes: Arc<Causes>,
 }
 
 /// A texture or buffer under a name; swaps change which memory it has.
@@ -172,6 +180,8 @@ pub(super) struct Lowering<'a> {
     in_steps: Option<usize>,
     /// `[2]`, or `[2][0]` in a loop in a loop.
     iteration: String,
+    /// A loop's counter was looked at since this was last put back.
+    saw_counter: bool,
     /// How many names are being resolved for one another.
     depth: usize,
     /// Variables of root inputs: `particles.position`, `color`.
@@ -210,6 +220,7 @@ impl<'a> Lowering<'a> {
             structure: Vec::new(),
             in_steps: None,
             iteration: String::new(),
+            saw_counter: false,
             depth: 0,
             input_vars: BTreeMap::new(),
             evaluating: Vec::new(),
@@ -302,20 +313,37 @@ impl<'a> Lowering<'a> {
 
 impl Scalar {
     pub fn known(value: Value) -> Self {
-        Self { value: model::UniformValue::Known(value), causes: Causes::default() }
+        Self::caused(value, Causes::default())
+    }
+
+    pub fn caused(value: Value, causes: Causes) -> Self {
+        Self { value: model::UniformValue::Known(value), causes: causes.into() }
     }
 
     pub fn live(expr: Expr, causes: Causes) -> Self {
-        Self { value: model::UniformValue::Live(expr), causes }
+        Self { value: model::UniformValue::Live(expr), causes: causes.into() }
     }
 }
 
 impl Causes {
     pub fn add(&mut self, other: &Causes) {
-        self.inputs.extend(other.inputs.iter().cloned());
-        self.live.extend(other.live.iter().cloned());
-        self.params.extend(other.params.iter().cloned());
+        add_new(&mut self.inputs, &other.inputs);
+        add_new(&mut self.live, &other.live);
+        add_new(&mut self.params, &other.params);
         self.viewport |= other.viewport;
+    }
+}
+
+/// Most names are there already: those are not copied first.
+fn add_new(all: &mut BTreeSet<String>, more: &BTreeSet<String>) {
+    if all.is_empty() {
+        all.clone_from(more);
+        return;
+    }
+    for name in more {
+        if !all.contains(name) {
+            all.insert(name.clone());
+        }
     }
 }
 

@@ -11,7 +11,7 @@ use crate::graph::expr::{Expr, ExprKind};
 use crate::graph::model::{Graph, InputKind, Name, Node, NodeKind, Use};
 use crate::graph::value::Value;
 use crate::plan::fields;
-use crate::plan::model::{Causes, UniformValue};
+use crate::plan::model::Causes;
 
 /// How many names may lead to one another: parts in parts, and `let` names of `let` names.
 const MAX_DEPTH: usize = 64;
@@ -78,12 +78,14 @@ impl Lowering<'_> {
     ) -> ScopeId {
         let scope = Scope {
             locals: locals(&graph),
+            dotted: HashMap::new(),
             path,
             parent,
             trace,
             binds: BTreeMap::new(),
             given: BTreeMap::new(),
             counters: Vec::new(),
+            given_counts: false,
             children: BTreeMap::new(),
             resources: vec![None; graph.resources.len()],
             broken: false,
@@ -108,7 +110,9 @@ impl Lowering<'_> {
 
     fn resolve_here(&mut self, s: ScopeId, path: &str, span: Span) -> Result<Entity> {
         if let Some((_, value)) = self.scopes[s].counters.iter().rev().find(|(name, _)| name == path) {
-            return Ok(Entity::Scalar(Scalar::known(Value::Int(*value))));
+            let counter = Scalar::known(Value::Int(*value));
+            self.saw_counter = true;
+            return Ok(Entity::Scalar(counter));
         }
         if let Some(builtin) = self.builtin(path, span) {
             return Ok(Entity::Scalar(builtin));
@@ -144,25 +148,7 @@ impl Lowering<'_> {
         if self.is_local(s, name) {
             found.push(name.to_owned());
         }
-        for (at, _) in name.match_indices('_') {
-            let (head, rest) = (&name[..at], &name[at + 1..]);
-            let Some(local) = self.scopes[s].locals.get(head).cloned() else { continue };
-            match local {
-                Local::Use(_) => {
-                    let child = self.child(s, head, span)?;
-                    let outputs = &self.scopes[child].graph.outputs;
-                    let matching = outputs.iter().filter(|o| o.name.value.replace('.', "_") == rest);
-                    found.extend(matching.map(|o| format!("{head}.{}", o.name.value)));
-                }
-                Local::Input(i) => {
-                    let kind = &self.scopes[s].graph.inputs[i].kind;
-                    if input_fields(kind).any(|field| field == rest) {
-                        found.push(format!("{head}.{rest}"));
-                    }
-                }
-                _ => {}
-            }
-        }
+        found.extend(self.dotted(s, name, span)?.iter().cloned());
         match found.len() {
             0 => Ok(None),
             1 => {
@@ -183,6 +169,36 @@ impl Lowering<'_> {
                 Err(traced(diagnostic, &self.scopes[s].trace))
             }
         }
+    }
+
+    /// The paths of two names and a dot that a WGSL name could be. Asked for at each pass of a loop.
+    fn dotted(&mut self, s: ScopeId, name: &str, span: Span) -> Result<Arc<[String]>> {
+        if let Some(known) = self.scopes[s].dotted.get(name) {
+            return Ok(known.clone());
+        }
+        let mut found = Vec::new();
+        for (at, _) in name.match_indices('_') {
+            let (head, rest) = (&name[..at], &name[at + 1..]);
+            let Some(local) = self.scopes[s].locals.get(head).cloned() else { continue };
+            match local {
+                Local::Use(_) => {
+                    let child = self.child(s, head, span)?;
+                    let outputs = &self.scopes[child].graph.outputs;
+                    let matching = outputs.iter().filter(|o| o.name.value.replace('.', "_") == rest);
+                    found.extend(matching.map(|o| format!("{head}.{}", o.name.value)));
+                }
+                Local::Input(i) => {
+                    let kind = &self.scopes[s].graph.inputs[i].kind;
+                    if input_fields(kind).any(|field| field == rest) {
+                        found.push(format!("{head}.{rest}"));
+                    }
+                }
+                _ => {}
+            }
+        }
+        let found: Arc<[String]> = found.into();
+        self.scopes[s].dotted.insert(name.to_owned(), found.clone());
+        Ok(found)
     }
 
     /// Where a name of the graph is declared.
@@ -221,7 +237,7 @@ impl Lowering<'_> {
             let [w, h] = self.request.viewport;
             let value = Value::Vector(vec![Value::Int(i64::from(w)), Value::Int(i64::from(h))]);
             let causes = Causes { viewport: true, ..Causes::default() };
-            return Some(Scalar { value: UniformValue::Known(value), causes });
+            return Some(Scalar::caused(value, causes));
         }
         fields::FRAME.iter().find(|(name, _)| *name == path).map(|(name, _)| live(name, span))
     }
@@ -343,6 +359,7 @@ impl Lowering<'_> {
     fn give(&mut self, s: ScopeId, child: ScopeId, used: &Use) {
         let graph = self.scopes[child].graph.clone();
         let mut given = BTreeMap::new();
+        let saw_counter = std::mem::take(&mut self.saw_counter);
         for (name, expr) in &used.params {
             let Some(param) = graph.params.iter().find(|p| p.name.value == name.value) else {
                 let message = format!("the part `{}` has no parameter `{}`", used.graph.value, name.value);
@@ -361,7 +378,9 @@ impl Lowering<'_> {
                 given.insert(name.value.clone(), (scalar, expr.span));
             }
         }
+        let given_counts = std::mem::replace(&mut self.saw_counter, saw_counter);
         let scope = &mut self.scopes[child];
+        scope.given_counts = given_counts;
         if scope.given != given {
             scope.given = given;
             scope.lets = vec![LetState::Waiting; scope.graph.lets.len()];

@@ -1,6 +1,6 @@
 //! Walking the pass list: parts, loops, branches.
 
-use super::{FlatPass, Lowering, Place, Result, ScopeId, fault, traced};
+use super::{FlatPass, LetState, Lowering, Place, Result, ScopeId, fault, traced};
 use crate::diagnostic::{Code, Span};
 use crate::graph::model::{self as ast, Name, Node, NodeKind};
 use crate::plan::model::{Access, Causes, ObjectRef, Pass, PassKind, UniformValue};
@@ -120,9 +120,12 @@ impl Lowering<'_> {
     }
 
     /// What depends on a counter changes with it.
-    fn forget_lets(&mut self, s: ScopeId) {
-        let count = self.scopes[s].lets.len();
-        self.scopes[s].lets = vec![super::LetState::Waiting; count];
+    pub(super) fn forget_lets(&mut self, s: ScopeId) {
+        for value in &mut self.scopes[s].lets {
+            if matches!(value, LetState::Known { counts: true, .. }) {
+                *value = LetState::Waiting;
+            }
+        }
     }
 
     fn push(&mut self, s: ScopeId, node: &Node, name: Option<&Name>, default: &str, draft: Draft) {

@@ -91,7 +91,7 @@ impl<'p> Lowering<'p> {
             ExprKind::Literal(value) => UniformValue::Known(value),
             _ => UniformValue::Live(folded),
         };
-        Ok(Scalar { value, causes })
+        Ok(Scalar { value, causes: causes.into() })
     }
 
     /// Evaluates what must be known now: sizes, counts, tests.
@@ -176,7 +176,10 @@ impl<'p> Lowering<'p> {
         let param = &graph.params[i];
         self.used.insert(param.name.span);
         match self.scopes[s].given.get(&param.name.value) {
-            Some((scalar, _)) => Ok(scalar.clone()),
+            Some((scalar, _)) => {
+                self.saw_counter |= self.scopes[s].given_counts;
+                Ok(scalar.clone())
+            }
             None => self.own_param(s, i),
         }
     }
@@ -197,7 +200,7 @@ impl<'p> Lowering<'p> {
                 return Err(traced(diagnostic, &self.scopes[s].trace));
             }
         };
-        let known = Scalar { value: UniformValue::Known(given), causes };
+        let known = Scalar::caused(given, causes);
         self.fit(known, param, param.name.span)
     }
 
@@ -229,18 +232,23 @@ impl<'p> Lowering<'p> {
         let derived = &graph.lets[i];
         self.used.insert(derived.name.span);
         match &self.scopes[s].lets[i] {
-            LetState::Known(scalar) => return Ok(scalar.clone()),
+            LetState::Known { scalar, counts } => {
+                self.saw_counter |= counts;
+                return Ok(scalar.clone());
+            }
             LetState::Evaluating => return Err(self.circle(s, derived.name.span)),
             LetState::Waiting => {}
         }
         self.scopes[s].lets[i] = LetState::Evaluating;
         self.evaluating.push((derived.name.span, derived.name.value.clone()));
+        let saw_counter = std::mem::take(&mut self.saw_counter);
         let result = self.scalar(s, &derived.expr);
+        let counts = std::mem::replace(&mut self.saw_counter, saw_counter);
+        self.saw_counter |= counts;
         self.evaluating.pop();
         self.scopes[s].lets[i] = match &result {
-            Ok(scalar) if self.scopes[s].counters.is_empty() => LetState::Known(scalar.clone()),
-            // It may depend on a loop's counter.
-            _ => LetState::Waiting,
+            Ok(scalar) => LetState::Known { scalar: scalar.clone(), counts },
+            Err(_) => LetState::Waiting,
         };
         result
     }
@@ -274,7 +282,9 @@ impl<'p> Lowering<'p> {
             (Function::Count, Entity::Input { .. }) => {
                 let scalar = self.resolve(s, &format!("{path}.count"), span)?;
                 match scalar {
-                    Entity::Scalar(Scalar { value: UniformValue::Known(value), causes }) => Ok((value, causes)),
+                    Entity::Scalar(Scalar { value: UniformValue::Known(value), causes }) => {
+                        Ok((value, std::sync::Arc::unwrap_or_clone(causes)))
+                    }
                     _ => refuse(self, "has no count"),
                 }
             }

@@ -54,7 +54,7 @@ impl Lowering<'_> {
                 let mut at = super::Place::at(place.at, &place.global().name, false);
                 at.shader = Some(place.global().span);
                 draft.accesses.push((access, at));
-                draft.causes.add(&self.object(object).causes.clone());
+                draft.causes.add(&self.object(object).causes);
                 return Ok(Bound::UniformBuffer { buffer: object });
             }
             Some(Entity::Input { root, kind }) => Prefix::Input { root, kind },

@@ -65,6 +65,7 @@ impl Lowering<'_> {
     /// Resources are the same in every iteration: they see no counter of a loop.
     fn describe_outside(&mut self, s: ScopeId, kind: &ResourceKind, at: Span) -> Result<(ObjectKind, bool, Causes)> {
         let counters = std::mem::take(&mut self.scopes[s].counters);
+        self.forget_lets(s);
         let made = self.describe(s, kind, at);
         self.scopes[s].counters = counters;
         made.map_err(|fault| {

@@ -59,7 +59,7 @@ impl Lowering<'_> {
         let mips = part(self, &view.mip, "mip", mips)?;
         let layers = part(self, &view.layer, "layer", layers)?;
         let dimension = if view.layer.is_some() { TextureDimension::D2 } else { dimension };
-        causes.add(&self.object(object).causes.clone());
+        causes.add(&self.object(object).causes);
         Ok(Viewed {
             view: View { object, mips, layers, dimension },
             mip_said: view.mip.is_some(),
