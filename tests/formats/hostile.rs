@@ -132,8 +132,8 @@ fn damaged_files_neither_panic_nor_take_memory() {
 }
 
 /// For so many seconds, all formats at once, each on a thread of its own and from numbers of its own:
-/// `MENISCUS_FUZZ_SECONDS=600 cargo test --test formats fuzz -- --nocapture`. Damage heaps up, so that
-/// what is found after hours differs from what is found at once.
+/// `MENISCUS_FUZZ_SECONDS=600 cargo test --test formats fuzz -- --nocapture`; `MENISCUS_FUZZ_ONLY=a.json` for one
+/// format. Damage heaps up, so that what is found after hours differs from what is found at once.
 #[test]
 fn fuzz() {
     let Some(seconds) = std::env::var("MENISCUS_FUZZ_SECONDS").ok().and_then(|s| s.parse::<u64>().ok()) else {
@@ -143,6 +143,10 @@ fn fuzz() {
     let start = std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH).unwrap().as_nanos() as u64;
     let mut formats: std::collections::BTreeMap<&str, Vec<Vec<u8>>> = std::collections::BTreeMap::new();
     seeds().into_iter().for_each(|(name, seed)| formats.entry(name).or_default().push(seed));
+    if let Ok(only) = std::env::var("MENISCUS_FUZZ_ONLY") {
+        formats.retain(|name, _| *name == only);
+        assert!(!formats.is_empty(), "there is no seed called `{only}`");
+    }
     std::thread::scope(|scope| {
         for (name, seeds) in &formats {
             scope.spawn(move || {

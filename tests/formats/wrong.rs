@@ -297,6 +297,9 @@ fn json_pdb_and_ptc_say_what_is_wrong() {
     says("a.json", rows, "line 1, column 28: row 2: `z` has 0 numbers, and 1 in the rows before");
     says("a.json", "[[1, 2, three]]", "line 1, column 9: expected a number, found `three`");
     says("a.json", "[[1, 2, 3]", "line 1, column 11: expected `]`, found the end of the file");
+    says("a.json", "[[1,2,3],4,5]", "line 1, column 10: row 2: a single value, and a list in the rows before");
+    says("a.json", "[1,2,3,[4,5,6]]", "line 1, column 8: row 4: a list, and a single value in the rows before");
+    says("a.json", "{\"x\": [1], \"x\": [2]}", "line 1, column 17: `x` comes twice");
     says("a.json", "[[1 2 3]]", "line 1, column 5: expected `,` or `]`, found `2`");
     says("a.json", "{\"a\": [1, 2]}", "line 1, column 1: no position: there is `a`");
     says("a.json", "{x: 1}", "line 1, column 2: expected a name in quotes");

@@ -85,10 +85,18 @@ impl<'a> Reader<'a> {
     fn list(&mut self, name: &str, depth: usize) -> Result<(), ReadError> {
         let mut rows = 0_usize;
         let mut of_objects = false;
-        self.column(name)?;
+        let column = self.column(name)?;
+        if self.columns[column].length > 0 {
+            return Err(self.error(format!("{} comes twice", shown(name.as_bytes()))));
+        }
+        let mut first = None;
         self.each(b']', |reader| {
             let start = reader.peek();
             let at = reader.at;
+            let (wanted, found) = (*first.get_or_insert(kind(start)), kind(start));
+            if found != wanted {
+                return Err(reader.error(format!("row {}: {found}, and {wanted} in the rows before", rows + 1)));
+            }
             reader.value(name, Role::Row, depth + 1)?;
             rows += 1;
             match start {
@@ -288,6 +296,15 @@ impl<'a> Reader<'a> {
         found.attributes = wide.into_iter().map(|(name, width, values)| of_rows(name, width, values, rows)).collect();
         (found.globals, found.notes) = (self.globals, notes);
         Ok(found)
+    }
+}
+
+/// What begins so.
+fn kind(start: Option<u8>) -> &'static str {
+    match start {
+        Some(b'{') => "an object",
+        Some(b'[') => "a list",
+        _ => "a single value",
     }
 }
 
