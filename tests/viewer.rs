@@ -5,6 +5,8 @@
 
 #[path = "viewer/desk.rs"]
 mod desk;
+#[path = "viewer/dropped.rs"]
+mod dropped;
 #[path = "support/project.rs"]
 mod project;
 #[path = "viewer/sequences.rs"]
@@ -215,33 +217,6 @@ fn a_sequence_is_recorded_and_trouble_ends_it_with_a_message() {
         desk.rest();
         assert!(desk.notice().contains("cannot be written"), "{}", desk.notice());
     }
-}
-
-#[test]
-fn what_is_dropped_opens_or_says_why_not() {
-    if !has_adapter() {
-        return;
-    }
-    let mut desk = Desk::new();
-    let first = desk.picture();
-    desk.project.write("notes.txt", "no scene");
-    desk.core.act(Action::Open(desk.project.path("notes.txt")));
-    assert!(desk.notice().contains("is no scene, graph or particle file"), "{}", desk.notice());
-    assert!(desk.picture() == first);
-
-    // Not what its extension says: told, and the last picture stays.
-    desk.project.write("wrong.ply", "this is no ply");
-    desk.core.act(Action::Open(desk.project.path("wrong.ply")));
-    desk.until("an error", |core| core.state.findings.as_ref().is_some_and(|f| f.is_stale));
-    assert!(desk.core.screen().texture().is_some());
-
-    desk.core.act(Action::Open(desk.project.path(SCENE)));
-    desk.until("the scene", |core| core.state.findings.is_none() && core.state.busy.is_none());
-    let graph = desk.project.text("graphs/dots.ron").replace("clear: 0.0", "clear: 1.0");
-    desk.project.write("graphs/other.ron", graph);
-    desk.core.act(Action::Open(desk.project.path("graphs/other.ron")));
-    desk.until("the other graph", |core| core.plan().is_some_and(|plan| plan.graph.ends_with("other.ron")));
-    assert!(desk.picture() != first);
 }
 
 #[test]

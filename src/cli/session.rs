@@ -24,6 +24,7 @@ pub fn job(args: &SceneArgs) -> Job {
         transparent: false,
         roots: Vec::new(),
         when: When::Start,
+        ..Job::default()
     }
 }
 

@@ -20,13 +20,15 @@ use crate::graph::value::Value;
 use crate::plan::model::{InputInfo, Request, Texture};
 use crate::program::{self, Program, missing_file};
 use crate::scene::sequence::Sequence;
-use crate::scene::{self, Camera, Item, PointerPath, Scene, framing};
+use crate::scene::{self, Camera, Item, MeshEntry, PointerPath, Scene, framing};
 use crate::syntax::Sp;
 
 /// The graph that turns light into a picture.
 const PRESENT: &str = "parts/present.ron";
 /// Names of its parameters on the command line begin so.
 const PRESENT_PREFIX: &str = "present.";
+/// The input that a scene's environment feeds.
+const ENVIRONMENT: &str = "environment";
 const DEFAULT_SIZE: [u32; 2] = [1024, 768];
 
 /// What somebody asks to see.
@@ -56,6 +58,10 @@ pub struct Job {
     pub roots: Vec<String>,
     /// Which frame of sequences to begin with.
     pub when: When,
+    /// Mesh files, each for an input, as bodies beside the scene's.
+    pub meshes: Vec<(String, PathBuf)>,
+    /// A picture in place of the scene's environment.
+    pub environment: Option<PathBuf>,
 }
 
 /// Everything that a picture is made of.
@@ -110,7 +116,8 @@ struct Loader<'a> {
 impl Loader<'_> {
     fn content(&mut self) -> Option<Content> {
         let source = source::read(self.files, &self.job.source, self.sources, &mut self.diagnostics)?;
-        let scene = source.scene;
+        let mut scene = source.scene;
+        self.add_given(&mut scene);
         // Files decode on other threads while the graphs are read.
         let (particles, images) = (self.particles(&scene, source.is_particles), self.images(&scene));
         let (meshes, models) = self.meshes(&scene);
@@ -148,6 +155,25 @@ impl Loader<'_> {
             roots,
             tracks,
         })
+    }
+
+    /// What somebody gives beside a scene counts as if the scene said it.
+    fn add_given(&self, scene: &mut Scene) {
+        let span = scene.span;
+        let said = |text: String| Sp { value: text, span };
+        for (input, path) in &self.job.meshes {
+            let entry = MeshEntry::of(said(path.display().to_string()));
+            match scene.meshes.iter_mut().find(|item| item.name.value == *input) {
+                Some(item) => item.value.push(entry),
+                None => scene.meshes.push(Item { name: said(input.clone()), value: vec![entry], span }),
+            }
+        }
+        if let Some(path) = &self.job.environment {
+            scene.cube = None;
+            scene.textures.retain(|item| item.name.value != ENVIRONMENT);
+            let value = said(path.display().to_string());
+            scene.textures.push(Item { name: said(ENVIRONMENT.into()), value, span });
+        }
     }
 
     fn graph(&mut self, scene: &Scene) -> Option<Program> {

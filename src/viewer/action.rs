@@ -9,8 +9,10 @@ use crate::scene::Camera;
 
 #[derive(Clone, Debug, PartialEq)]
 pub enum Action {
-    /// A scene, a graph, particles or a picture.
+    /// A scene, particles; a graph, a mesh or an environment for what is open.
     Open(PathBuf),
+    /// Takes away what was dropped onto the scene.
+    TakeAway(PathBuf),
     /// Another value of a parameter; absent: the scene's, or the declared one.
     Set {
         path: String,

@@ -12,6 +12,7 @@ mod app;
 mod camera;
 pub mod clock;
 pub mod core;
+mod dropped;
 mod editor;
 pub mod history;
 mod inspect;

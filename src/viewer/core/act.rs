@@ -13,6 +13,7 @@ impl Core {
     pub fn act(&mut self, action: Action) {
         match action {
             Action::Open(path) => self.open_path(path),
+            Action::TakeAway(path) => self.take_away(&path),
             Action::Set { path, value } => self.set(path, value),
             Action::ResetParams => self.state.overrides.clear(),
             Action::Camera(camera) => {

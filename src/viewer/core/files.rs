@@ -1,61 +1,18 @@
-//! Opening what is dropped, and putting what was changed back into the scene file.
+//! Opening what was dropped, and putting what was changed back into the scene file.
 
 use std::path::{Path, PathBuf};
 
 use super::Core;
 use crate::diagnostic::{Diagnostics, Sources};
 use crate::files::library_file;
+use crate::graph::model::{Input as Declared, InputKind};
 use crate::graph::value::Value;
 use crate::host::{Input, Job};
 use crate::output::Output;
-use crate::scene::{self, edit, particles};
+use crate::scene::{self, edit};
+use crate::viewer::dropped::{Kind, kind_of};
 use crate::viewer::params::PRESENT;
 use crate::viewer::state::short;
-
-/// What a file can be opened as.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
-    Scene,
-    Graph,
-    Particles,
-}
-
-/// What a file is, by its name and, of RON, by its first word.
-///
-/// # Errors
-/// If it is nothing that can be opened; the text says so.
-pub fn kind_of(path: &Path) -> Result<Kind, String> {
-    let shown = short(path);
-    if path.is_dir() {
-        return Err(format!("`{shown}` is a folder: drop a file of it"));
-    }
-    if path.extension().is_some_and(|end| end.eq_ignore_ascii_case("ron")) {
-        let text = std::fs::read_to_string(path).map_err(|error| format!("`{shown}` cannot be read: {error}"))?;
-        return Ok(if first_word(&text) == "Graph" { Kind::Graph } else { Kind::Scene });
-    }
-    if particles::known_extension(path) {
-        return Ok(Kind::Particles);
-    }
-    Err(format!("`{shown}` is no scene, graph or particle file"))
-}
-
-/// The first word of a text in RON, behind comments.
-fn first_word(text: &str) -> &str {
-    let mut rest = text.trim_start_matches('\u{feff}').trim_start();
-    loop {
-        let end = if rest.starts_with("//") {
-            rest.find('\n')
-        } else if rest.starts_with("/*") {
-            rest.find("*/").map(|at| at + 1)
-        } else if rest.starts_with("#!") {
-            rest.find(']')
-        } else {
-            let end = rest.find(|c: char| !c.is_alphanumeric() && c != '_').unwrap_or(rest.len());
-            return &rest[..end];
-        };
-        rest = end.map_or("", |at| rest[at + 1..].trim_start());
-    }
-}
 
 impl Core {
     /// Opens a file that was dropped or picked.
@@ -71,13 +28,54 @@ impl Core {
                 self.open(Job { source: path, graph, size, ..Job::default() });
             }
             (Ok(Kind::Graph), Some(before)) => {
-                let graph = Some(path.display().to_string());
+                let graph = Some(absolute(&path).display().to_string());
                 self.reopen(Job { graph, ..before });
+            }
+            (Ok(Kind::Mesh), Some(before)) => self.add_mesh(before, &path),
+            (Ok(Kind::Picture), Some(before)) => {
+                self.state.say(format!("{} is the environment now", short(&path)));
+                self.reopen(Job { environment: Some(absolute(&path)), ..before });
             }
             (Ok(Kind::Graph), None) => {
                 self.state.say("a graph draws something: drop a scene or particles first, then the graph");
             }
+            (Ok(Kind::Mesh), None) => {
+                self.state.say("a body stands in a scene: drop a scene or particles first, then the mesh");
+            }
+            (Ok(Kind::Picture), None) => {
+                self.state.say("a picture is an environment: drop a scene or particles first, then the picture");
+            }
         }
+    }
+
+    /// A mesh becomes a body beside those of the scene.
+    fn add_mesh(&mut self, before: Job, path: &Path) {
+        let root = self.session.content().map(|content| &content.program.root);
+        let takes = |input: &&Declared| matches!(input.kind, InputKind::Meshes { .. });
+        let Some(input) = root.and_then(|root| root.inputs.iter().find(takes)) else {
+            let graph = root.map_or_else(|| "nothing that is built".into(), |root| format!("`{}`", short(&root.path)));
+            self.state.say(format!("{graph} takes no meshes"));
+            return;
+        };
+        let given = (input.name.value.clone(), absolute(path));
+        let mut meshes = before.meshes.clone();
+        // One that did not work goes when another comes.
+        if self.state.findings.as_ref().is_some_and(|findings| findings.is_stale) {
+            meshes.pop();
+        }
+        meshes.retain(|other| *other != given);
+        meshes.push(given);
+        self.state.say(format!("{} stands in the scene", short(path)));
+        self.reopen(Job { meshes, ..before });
+    }
+
+    /// Takes away what was dropped onto the scene.
+    pub(super) fn take_away(&mut self, path: &Path) {
+        let Some(mut job) = self.state.job.clone() else { return };
+        job.meshes.retain(|(_, other)| other != path);
+        job.environment = job.environment.filter(|other| other != path);
+        job.graph = job.graph.filter(|other| Path::new(other) != path);
+        self.reopen(job);
     }
 
     /// Puts changed parameters into the scene file.
@@ -176,6 +174,10 @@ impl Core {
     }
 }
 
+fn absolute(path: &Path) -> PathBuf {
+    std::path::absolute(path).unwrap_or_else(|_| path.to_owned())
+}
+
 /// Writes a scene's text, if it still is one, in place of what was there.
 fn write(path: &Path, text: &str) -> Result<(), String> {
     let mut found = Diagnostics::new();
@@ -188,16 +190,4 @@ fn write(path: &Path, text: &str) -> Result<(), String> {
     let target = std::fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
     let output = Output::reserve(&target).map_err(|error| error.message)?;
     output.write(text.as_bytes()).map_err(|error| error.message)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_first_word_stands_behind_comments() {
-        assert_eq!(first_word("// a\n/* b */ Graph(x: 1)"), "Graph");
-        assert_eq!(first_word("\u{feff}#![enable(x)]\nScene ("), "Scene");
-        assert_eq!(first_word("// only"), "");
-    }
 }

@@ -20,6 +20,7 @@ pub fn draw(ui: &mut Ui, core: &Core, layout: &mut Layout, actions: &mut Vec<Act
                 ui.weak("drawn by");
                 ui.label(short(&plan.graph)).on_hover_text(plan.graph.display().to_string());
             }
+            given(ui, core, actions);
             ui.separator();
             if ui.button("Frame").on_hover_text("look at everything (F)").clicked() {
                 actions.push(Action::Frame);
@@ -49,6 +50,18 @@ pub fn draw(ui: &mut Ui, core: &Core, layout: &mut Layout, actions: &mut Vec<Act
         });
         ui.add_space(2.0);
     });
+}
+
+/// What was dropped onto the scene, each to be taken away again.
+fn given(ui: &mut Ui, core: &Core, actions: &mut Vec<Action>) {
+    let Some(job) = &core.state.job else { return };
+    for path in job.meshes.iter().map(|(_, path)| path).chain(&job.environment) {
+        ui.separator();
+        ui.label(short(path)).on_hover_text(format!("dropped onto the scene: {}", path.display()));
+        if ui.small_button("x").on_hover_text("take it away").clicked() {
+            actions.push(Action::TakeAway(path.clone()));
+        }
+    }
 }
 
 fn viewpoints(ui: &mut Ui, core: &Core, actions: &mut Vec<Action>) {
