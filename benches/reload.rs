@@ -1,7 +1,8 @@
 //! From the end of a save to the new picture: `cargo bench --bench reload`.
 //!
 //! 200 edits of one shader of a shipped graph at 640 x 480, followed as `watch` does. The waiting for
-//! a burst of saves to end is part of it. Needs a device.
+//! a burst of saves to end is part of it. Then the same and edits of a module that nearly all shaders
+//! import, followed as the window does: how long its thread works at a time. Needs a device.
 
 #![allow(clippy::unwrap_used, reason = "a bench fails by panicking")]
 
@@ -16,6 +17,9 @@ use follower::{Follower, Outcome, Times};
 const EDITS: usize = 200;
 const SCENE: &str = "scenes/dam_break.ron";
 const SHADER: &str = "shaders/imai2016/refract.wgsl";
+/// A module that nearly all shaders import.
+const MODULE: &str = "shaders/lib/camera.wgsl";
+const SIZE: [u32; 2] = [640, 480];
 
 fn main() {
     let folder = std::env::temp_dir().join(format!("meniscus-bench-{}", std::process::id()));
@@ -23,12 +27,12 @@ fn main() {
     for part in ["graphs", "shaders", "scenes"] {
         copy(&root.join(part), &folder.join(part));
     }
-    let mut follower = Follower::new(folder.join(SCENE), [640, 480]);
+    let mut follower = Follower::new(folder.join(SCENE), SIZE);
     let Outcome::Drawn { .. } = follower.reload() else { panic!("the scene does not draw") };
     let shader = folder.join(SHADER);
     let text = std::fs::read_to_string(&shader).unwrap();
     let mut all = Vec::new();
-    let mut waits = Vec::new();
+    let (mut waits, mut frames) = (Vec::new(), Vec::new());
     for edit in 0..EDITS {
         // A constant that no picture shows: the module is another one each time.
         std::fs::write(&shader, format!("{text}\nconst EDIT = {edit}u;\n")).unwrap();
@@ -37,12 +41,19 @@ fn main() {
         assert_eq!(pipelines_built, 1, "one shader is one pipeline");
         all.push(times);
         waits.push(saved.elapsed());
+        frames.push(follower.redraw());
     }
-    print(&all, &waits);
+    print(&all, &waits, &frames);
+    std::fs::write(&shader, &text).unwrap();
+    drop(follower);
+    #[cfg(feature = "viewer")]
+    for name in [SHADER, MODULE] {
+        window::run(&folder, name);
+    }
     _ = std::fs::remove_dir_all(folder);
 }
 
-fn print(all: &[Times], waits: &[Duration]) {
+fn print(all: &[Times], waits: &[Duration], frames: &[Duration]) {
     let row = |what: &str, pick: &dyn Fn(&Times) -> Duration| {
         let [p50, p99] = percentiles(all.iter().map(pick).collect());
         println!("{what:<28} {p50:>9.1} {p99:>9.1}");
@@ -55,6 +66,12 @@ fn print(all: &[Times], waits: &[Duration]) {
     row("all but drawing", &|t| t.noticing + t.checking + t.building);
     let [p50, p99] = percentiles(waits.to_vec());
     println!("{:<28} {p50:>9.1} {p99:>9.1}", "from save to picture");
+    let [p50, p99] = percentiles(frames.to_vec());
+    println!("{:<28} {p50:>9.1} {p99:>9.1}", "the same frame drawn again");
+    // What a driver compiles only when it first draws counts as reloading.
+    let rest = waits.iter().zip(frames).map(|(wait, frame)| wait.saturating_sub(*frame)).collect();
+    let [p50, p99] = percentiles(rest);
+    println!("{:<28} {p50:>9.1} {p99:>9.1}", "save to picture less that");
 }
 
 fn percentiles(mut times: Vec<Duration>) -> [f64; 2] {
@@ -71,5 +88,61 @@ fn copy(from: &PathBuf, to: &PathBuf) {
             true => copy(&path, &target),
             false => _ = std::fs::copy(&path, &target).unwrap(),
         }
+    }
+}
+
+#[cfg(feature = "viewer")]
+mod window {
+    use std::path::Path;
+    use std::time::{Duration, Instant};
+
+    use meniscus::engine::{Gpu, GpuOptions};
+    use meniscus::host::Job;
+    use meniscus::viewer::core::Core;
+
+    use super::{SCENE, SIZE, percentiles};
+
+    const EDITS: usize = 50;
+
+    /// Edits a file and lets a window without a window follow.
+    pub fn run(folder: &Path, name: &str) {
+        let path = folder.join(name);
+        let text = std::fs::read_to_string(&path).unwrap();
+        let gpu = Gpu::open(&GpuOptions::default()).unwrap();
+        let job = Job { source: folder.join(SCENE), size: Some(SIZE), ..Job::default() };
+        let mut core = Core::new(gpu, Some(job), || {}).unwrap();
+        core.want_size(SIZE);
+        until(&mut core, |core| core.state.frames > 0 && !core.is_drawing());
+        let (mut longest, mut waits, mut built) = (Vec::new(), Vec::new(), 0);
+        for edit in 0..EDITS {
+            std::fs::write(&path, format!("{text}\nconst EDIT_W = {edit}u;\n")).unwrap();
+            let (saved, reloads) = (Instant::now(), core.state.reloads.len());
+            longest.push(until(&mut core, |core| {
+                core.state.reloads.len() > reloads && core.state.reloads[0].drawing_ms.is_some()
+            }));
+            let reload = &core.state.reloads[0];
+            assert!(reload.is_good && reload.pipelines_late == 0, "{reload:?}");
+            built = reload.pipelines_built;
+            waits.push(saved.elapsed());
+        }
+        std::fs::write(&path, text).unwrap();
+        let most = longest.iter().max().unwrap().as_secs_f64() * 1e3;
+        let ([work50, work99], [wait50, wait99]) = (percentiles(longest), percentiles(waits));
+        println!("the window, {EDITS} edits of {name}, {built} pipelines built each time");
+        println!("{:<28} {wait50:>9.1} {wait99:>9.1}", "from save to picture");
+        println!("{:<28} {work50:>9.1} {work99:>9.1}   longest {most:.1}", "its thread's longest work");
+    }
+
+    /// Lets it work until something is so; gives the longest that it worked at a time.
+    fn until(core: &mut Core, is_so: impl Fn(&Core) -> bool) -> Duration {
+        let (began, mut longest) = (Instant::now(), Duration::ZERO);
+        while !is_so(core) {
+            let before = Instant::now();
+            core.tick(before);
+            longest = longest.max(before.elapsed());
+            assert!(began.elapsed() < Duration::from_secs(60), "{:?}", core.state.findings);
+            std::thread::sleep(Duration::from_millis(1));
+        }
+        longest
     }
 }

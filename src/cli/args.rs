@@ -127,6 +127,9 @@ pub struct WatchArgs {
 pub struct ViewArgs {
     #[command(flatten)]
     pub scene: SceneArgs,
+    /// Say at the end how long the interface's frames took
+    #[arg(long)]
+    pub timings: bool,
 }
 
 #[derive(Args, Clone, Debug)]

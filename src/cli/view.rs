@@ -25,7 +25,11 @@ fn view(args: &ViewArgs) -> Result<(), Diagnostics> {
         renderable(&DiskFiles, &args.scene.scene)?;
         Some(super::session::job(&args.scene))
     };
-    run(Options { job, backend: args.scene.backend.clone() })
+    let pace = run(Options { job, backend: args.scene.backend.clone() })?;
+    if args.timings {
+        super::report::say(&pace.line());
+    }
+    Ok(())
 }
 
 #[cfg(not(feature = "viewer"))]

@@ -1,12 +1,12 @@
 //! Making pipelines, also on another thread than the one that draws: a plan whose pipelines were
 //! compiled aside is prepared without waiting for the driver's compiler.
 
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::Arc;
 
 use super::errors;
 use super::gpu::Gpu;
 use super::meshes::{self, ByFaces};
-use super::pipeline::{Pipeline, PipelineCache, Recipe};
+use super::pipeline::{Pipeline, Recipe, Shelf};
 use super::prepare::recipe;
 use crate::diagnostic::Diagnostics;
 use crate::plan::model::Plan;
@@ -16,7 +16,7 @@ use crate::plan::model::Plan;
 #[derive(Clone, Debug)]
 pub struct Compiler {
     gpu: Gpu,
-    cache: Arc<Mutex<PipelineCache>>,
+    shelf: Arc<Shelf>,
 }
 
 /// The pipeline of each pass, for those that need one.
@@ -31,7 +31,7 @@ pub struct Compiled {
 
 impl Compiler {
     pub(super) fn new(gpu: &Gpu) -> Self {
-        Self { gpu: gpu.clone(), cache: Arc::default() }
+        Self { gpu: gpu.clone(), shelf: Arc::default() }
     }
 
     pub fn gpu(&self) -> &Gpu {
@@ -49,7 +49,7 @@ impl Compiler {
 
     /// The pipeline of each pass that needs one.
     pub(super) fn pipelines(&self, plan: &Plan) -> Result<(Pipelines, Vec<Option<ByFaces>>, Compiled), Diagnostics> {
-        self.cache.lock().unwrap_or_else(PoisonError::into_inner).begin_round();
+        self.shelf.cache().begin_round();
         let mut found = Diagnostics::new();
         let mut compiled = Compiled::default();
         let mut pipelines = Vec::with_capacity(plan.passes.len());
@@ -76,18 +76,15 @@ impl Compiler {
         self.get(recipe, label, &mut Compiled::default())
     }
 
-    /// The lock is held for one pipeline at a time, so that who draws waits for one at most.
     fn get(&self, recipe: &Recipe, label: &str, compiled: &mut Compiled) -> Result<Arc<Pipeline>, String> {
-        let mut cache = self.cache.lock().unwrap_or_else(PoisonError::into_inner);
-        let made = errors::scoped(&self.gpu, || cache.get(&self.gpu, recipe, label));
-        match made {
+        match errors::scoped(&self.gpu, || self.shelf.get(&self.gpu, recipe, label)) {
             Ok((pipeline, is_new)) => {
                 let count = if is_new { &mut compiled.built } else { &mut compiled.reused };
                 *count += 1;
                 Ok(pipeline)
             }
             Err(error) => {
-                cache.forget(recipe);
+                self.shelf.cache().forget(recipe);
                 Err(error)
             }
         }

@@ -3,7 +3,7 @@
 
 use std::borrow::Cow;
 use std::collections::HashMap;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use wgpu_types as wgt;
 
@@ -167,18 +167,10 @@ impl PipelineCache {
         self.pipelines.retain(|_, kept| kept.used >= oldest);
     }
 
-    /// The pipeline of a recipe, from the cache or made now, and whether it is new. To be called inside
-    /// error scopes; what is made inside a scope that catches an error must be forgotten with
-    /// [`Self::forget`].
-    pub fn get(&mut self, gpu: &Gpu, recipe: &Recipe, label: &str) -> (Arc<Pipeline>, bool) {
-        let key = recipe.key();
-        if let Some(kept) = self.pipelines.get_mut(&key) {
-            kept.used = self.round;
-            return (Arc::clone(&kept.value), false);
-        }
-        let pipeline = Arc::new(self.build(gpu, recipe, label));
-        self.pipelines.insert(key, Kept { value: Arc::clone(&pipeline), used: self.round });
-        (pipeline, true)
+    fn find(&mut self, key: &Key) -> Option<Arc<Pipeline>> {
+        let kept = self.pipelines.get_mut(key)?;
+        kept.used = self.round;
+        Some(Arc::clone(&kept.value))
     }
 
     /// Forgets what a recipe made: it is invalid.
@@ -193,8 +185,34 @@ impl PipelineCache {
             self.modules.remove(&stage.source.hash());
         }
     }
+}
 
-    fn build(&mut self, gpu: &Gpu, recipe: &Recipe, label: &str) -> Pipeline {
+/// The cache for several threads. Its lock is never held while something is made: who draws does not wait
+/// for what another thread has the driver compile.
+#[derive(Debug, Default)]
+pub(super) struct Shelf(Mutex<PipelineCache>);
+
+impl Shelf {
+    pub fn cache(&self) -> MutexGuard<'_, PipelineCache> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// The pipeline of a recipe, found or made now, and whether it is new. To be called inside error
+    /// scopes; what is made inside a scope that catches an error must be forgotten with
+    /// [`PipelineCache::forget`].
+    pub fn get(&self, gpu: &Gpu, recipe: &Recipe, label: &str) -> (Arc<Pipeline>, bool) {
+        let key = recipe.key();
+        if let Some(known) = self.cache().find(&key) {
+            return (known, false);
+        }
+        let pipeline = Arc::new(self.build(gpu, recipe, label));
+        let mut cache = self.cache();
+        let kept = Kept { value: Arc::clone(&pipeline), used: cache.round };
+        cache.pipelines.insert(key, kept);
+        (pipeline, true)
+    }
+
+    fn build(&self, gpu: &Gpu, recipe: &Recipe, label: &str) -> Pipeline {
         let layout = (!recipe.layout.is_empty()).then(|| self.bind_group_layout(gpu, &recipe.layout));
         let groups: Vec<_> = layout.iter().map(Some).collect();
         let pipeline_layout = gpu.device().create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
@@ -219,7 +237,7 @@ impl PipelineCache {
         Pipeline { kind, layout }
     }
 
-    fn draw(&mut self, gpu: &Gpu, recipe: &Recipe, layout: &wgpu::PipelineLayout, label: &str) -> wgpu::RenderPipeline {
+    fn draw(&self, gpu: &Gpu, recipe: &Recipe, layout: &wgpu::PipelineLayout, label: &str) -> wgpu::RenderPipeline {
         let RecipeKind::Draw { vertex, fragment, vertices, targets, primitive, depth, samples } = &recipe.kind else {
             unreachable!("only called for draws")
         };
@@ -259,29 +277,34 @@ impl PipelineCache {
         })
     }
 
-    fn bind_group_layout(&mut self, gpu: &Gpu, entries: &[wgt::BindGroupLayoutEntry]) -> wgpu::BindGroupLayout {
-        if let Some(layout) = self.layouts.get(entries) {
+    fn bind_group_layout(&self, gpu: &Gpu, entries: &[wgt::BindGroupLayoutEntry]) -> wgpu::BindGroupLayout {
+        if let Some(layout) = self.cache().layouts.get(entries) {
             return layout.clone();
         }
         let layout = gpu.device().create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: None, entries });
-        self.layouts.insert(entries.to_vec(), layout.clone());
+        self.cache().layouts.insert(entries.to_vec(), layout.clone());
         layout
     }
 
-    fn module(&mut self, gpu: &Gpu, source: &Source) -> wgpu::ShaderModule {
-        let round = self.round;
-        let kept = self.modules.entry(source.hash()).or_insert_with(|| {
-            let (label, source) = match source {
-                Source::Module(m) => {
-                    (m.path.to_str(), wgpu::ShaderSource::Naga(Cow::Owned(naga::Module::clone(&m.naga))))
-                }
-                Source::Text(text) => (Some("engine"), wgpu::ShaderSource::Wgsl(text.clone())),
-            };
-            let value = gpu.device().create_shader_module(wgpu::ShaderModuleDescriptor { label, source });
-            Kept { value, used: round }
-        });
-        kept.used = round;
-        kept.value.clone()
+    fn module(&self, gpu: &Gpu, source: &Source) -> wgpu::ShaderModule {
+        let hash = source.hash();
+        {
+            let mut cache = self.cache();
+            let round = cache.round;
+            if let Some(kept) = cache.modules.get_mut(&hash) {
+                kept.used = round;
+                return kept.value.clone();
+            }
+        }
+        let (label, source) = match source {
+            Source::Module(m) => (m.path.to_str(), wgpu::ShaderSource::Naga(Cow::Owned(naga::Module::clone(&m.naga)))),
+            Source::Text(text) => (Some("engine"), wgpu::ShaderSource::Wgsl(text.clone())),
+        };
+        let value = gpu.device().create_shader_module(wgpu::ShaderModuleDescriptor { label, source });
+        let mut cache = self.cache();
+        let kept = Kept { value: value.clone(), used: cache.round };
+        cache.modules.insert(hash, kept);
+        value
     }
 }
 

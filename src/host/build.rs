@@ -58,6 +58,8 @@ pub struct Planned {
 pub struct Built {
     pub pipelines_built: usize,
     pub pipelines_reused: usize,
+    /// Of those that were built, how many only while installing, which whoever draws waited for.
+    pub pipelines_late: usize,
     /// Bytes of textures and buffers.
     pub memory_bytes: u64,
     /// Notes and warnings of planning.
@@ -156,8 +158,10 @@ impl Session {
             });
         let reports = [graph.build_report(), present.build_report()];
         let reused: usize = reports.iter().map(|r| r.pipelines_reused).sum();
+        let pipelines_late = reports.iter().map(|r| r.pipelines_built).sum();
         let built = Built {
-            pipelines_built: compiled.built + reports.iter().map(|r| r.pipelines_built).sum::<usize>(),
+            pipelines_built: compiled.built + pipelines_late,
+            pipelines_late,
             pipelines_reused: reused.saturating_sub(compiled.built),
             memory_bytes: graph.memory_bytes() + present.memory_bytes(),
             diagnostics: warnings,

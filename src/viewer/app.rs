@@ -12,6 +12,7 @@ use winit::window::{Window, WindowId};
 use super::Options;
 use super::action::Action;
 use super::core::Core;
+use super::pace::Pace;
 use super::painter::{Paint, Painter};
 use super::ui::{self, Layout};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
@@ -25,11 +26,11 @@ const MOST_LOSSES: usize = 3;
 #[derive(Clone, Copy, Debug)]
 struct News;
 
-pub fn run(options: Options) -> Result<(), Diagnostics> {
+pub fn run(options: Options) -> Result<Pace, Diagnostics> {
     let events = EventLoop::<News>::with_user_event().build().map_err(|error| no_display(&error.to_string()))?;
-    let mut app = App { options, proxy: events.create_proxy(), open: None, outcome: Ok(()) };
+    let mut app = App { options, proxy: events.create_proxy(), open: None, outcome: Ok(()), pace: Pace::default() };
     events.run_app(&mut app).map_err(|error| no_display(&error.to_string()))?;
-    app.outcome
+    app.outcome.map(|()| app.pace)
 }
 
 fn no_display(why: &str) -> Diagnostic {
@@ -44,6 +45,7 @@ struct App {
     proxy: EventLoopProxy<News>,
     open: Option<Open>,
     outcome: Result<(), Diagnostics>,
+    pace: Pace,
 }
 
 /// A window with all that belongs to it.
@@ -83,7 +85,11 @@ impl ApplicationHandler<News> for App {
         let Some(open) = &mut self.open else { return };
         match event {
             WindowEvent::CloseRequested => return self.end(events, Ok(())),
-            WindowEvent::RedrawRequested => return open.redraw(),
+            WindowEvent::RedrawRequested => {
+                let began = Instant::now();
+                open.redraw();
+                return self.pace.painted(began.elapsed());
+            }
             WindowEvent::Resized(size) => open.painter.resize([size.width, size.height]),
             WindowEvent::Occluded(is_hidden) => open.is_hidden = is_hidden,
             WindowEvent::DroppedFile(ref path) => open.core.act(Action::Open(path.clone())),
@@ -96,7 +102,10 @@ impl ApplicationHandler<News> for App {
 
     fn about_to_wait(&mut self, events: &ActiveEventLoop) {
         let Some(open) = &mut self.open else { return };
-        match open.tick() {
+        let began = Instant::now();
+        let ticked = open.tick();
+        self.pace.worked(began.elapsed());
+        match ticked {
             Ok(wake) => events.set_control_flow(wake.map_or(ControlFlow::Wait, ControlFlow::WaitUntil)),
             Err(found) => self.end(events, Err(found)),
         }

@@ -17,6 +17,7 @@ mod editor;
 pub mod history;
 mod inspect;
 pub mod look;
+mod pace;
 mod painter;
 pub mod params;
 mod sequences;
@@ -24,6 +25,8 @@ pub mod state;
 mod ui;
 mod viewpoints;
 mod worker;
+
+pub use pace::Pace;
 
 use crate::diagnostic::Diagnostics;
 use crate::host::Job;
@@ -37,10 +40,10 @@ pub struct Options {
     pub backend: Option<String>,
 }
 
-/// Opens the window and stays until it is closed.
+/// Opens the window and stays until it is closed; then tells how the interface's thread kept pace.
 ///
 /// # Errors
 /// If there is no display or no usable adapter, or the device was lost for good.
-pub fn run(options: Options) -> Result<(), Diagnostics> {
+pub fn run(options: Options) -> Result<Pace, Diagnostics> {
     app::run(options)
 }

@@ -98,6 +98,8 @@ pub struct Reload {
     pub drawing_ms: Option<f64>,
     pub pipelines_built: usize,
     pub pipelines_kept: usize,
+    /// Built by the interface's thread, which then waited for them.
+    pub pipelines_late: usize,
 }
 
 impl Reload {

@@ -67,6 +67,15 @@ impl Follower {
         Outcome::Drawn { picture, times, pipelines_built: built.pipelines_built }
     }
 
+    /// How long the frame at hand takes, drawn again with all its passes.
+    pub fn redraw(&mut self) -> Duration {
+        let began = Instant::now();
+        self.session.run_all(true);
+        self.session.draw(Moment::default(), true).unwrap();
+        self.session.run_all(false);
+        began.elapsed()
+    }
+
     /// Waits for a change and follows it.
     pub fn follow(&mut self) -> Outcome {
         let change = self.watch.next(Duration::from_secs(60)).unwrap().expect("a change within a minute");

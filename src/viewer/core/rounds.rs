@@ -54,6 +54,7 @@ impl Core {
                 drawing_ms: None,
                 pipelines_built: built.as_ref().map_or(0, |b| b.pipelines_built),
                 pipelines_kept: built.as_ref().map_or(0, |b| b.pipelines_reused),
+                pipelines_late: built.as_ref().map_or(0, |b| b.pipelines_late),
             });
             self.reload_pending = built.is_some();
         }
