@@ -7,6 +7,8 @@
 mod desk;
 #[path = "viewer/dropped.rs"]
 mod dropped;
+#[path = "viewer/graph.rs"]
+mod graph;
 #[path = "support/project.rs"]
 mod project;
 #[path = "viewer/sequences.rs"]

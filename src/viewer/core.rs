@@ -140,6 +140,11 @@ impl Core {
         std::mem::take(&mut self.screen_changed)
     }
 
+    /// Another number for another plan.
+    pub fn builds(&self) -> u64 {
+        self.version
+    }
+
     /// How often something was read back for looking at it.
     pub fn reads(&self) -> u64 {
         self.serial

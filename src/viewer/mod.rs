@@ -14,6 +14,7 @@ pub mod clock;
 pub mod core;
 mod dropped;
 mod editor;
+pub mod graph;
 pub mod history;
 mod inspect;
 pub mod look;

@@ -1,11 +1,11 @@
-//! The graph drawn: passes are columns in planned order, memory is rows. A bar is a resource's life
+//! The graph in time: passes are columns in planned order, memory is rows. A bar is a resource's life
 //! in its memory; a ring is a read, a dot a write; several bars in one row share memory.
 
 use std::collections::BTreeMap;
 
 use egui::{Align2, Color32, CornerRadius, FontId, Pos2, Rect, ScrollArea, Sense, Stroke, Ui};
 
-use super::{Layout, Middle, status, theme};
+use super::{Layout, Middle, nodes, status, theme};
 use crate::plan::model::{ObjectId, ObjectRef, Origin, Plan};
 use crate::viewer::action::Action;
 use crate::viewer::core::Core;
@@ -27,8 +27,11 @@ pub fn draw(ui: &mut Ui, core: &Core, layout: &mut Layout, actions: &mut Vec<Act
         ui.weak("nothing is built yet");
         return;
     };
+    legend(ui, plan, layout);
+    if !layout.shows_lives {
+        return nodes::draw(ui, core, layout, actions);
+    }
     let lanes = lanes(plan);
-    legend(ui, plan);
     ScrollArea::both().auto_shrink(false).show(ui, |ui| {
         let lean = TOP * 0.6;
         let size = egui::vec2(LABEL + plan.passes.len() as f32 * COLUMN + lean, TOP + lanes.len() as f32 * ROW + 12.0);
@@ -53,9 +56,12 @@ pub fn draw(ui: &mut Ui, core: &Core, layout: &mut Layout, actions: &mut Vec<Act
     });
 }
 
-fn legend(ui: &mut Ui, plan: &Plan) {
+fn legend(ui: &mut Ui, plan: &Plan, layout: &mut Layout) {
     egui::Frame::NONE.inner_margin(6.0).show(ui, |ui| {
         ui.horizontal_wrapped(|ui| {
+            ui.selectable_value(&mut layout.shows_lives, false, "nodes");
+            ui.selectable_value(&mut layout.shows_lives, true, "lives in memory");
+            ui.separator();
             let held: u64 = plan.memory.keep.iter().map(|slot| slot.bytes).sum();
             ui.label(format!(
                 "{} passes; the frame's memory {} (without sharing {}, live at once {})",
@@ -64,7 +70,10 @@ fn legend(ui: &mut Ui, plan: &Plan) {
                 status::bytes(plan.memory.unshared),
                 status::bytes(plan.memory.lower_bound),
             ));
-            ui.weak("dot: writes, ring: reads, bars in one row share memory; click a bar to look at it");
+            ui.weak(match layout.shows_lives {
+                true => "dot: writes, ring: reads, bars in one row share memory; click a bar to look at it",
+                false => "blue: reads, amber: writes; drag to move, wheel to scale, double click for all, click a resource to look at it",
+            });
         });
     });
 }

@@ -6,6 +6,7 @@ mod capture;
 mod chart;
 mod help;
 mod messages;
+mod nodes;
 mod params;
 mod passes;
 mod picture;
@@ -80,6 +81,9 @@ pub struct Layout {
     pub filter: String,
     pub middle: Middle,
     pub resource: resource::View,
+    pub nodes: nodes::View,
+    /// The graph as lives in memory, in place of nodes.
+    pub shows_lives: bool,
     pub capture: capture::Form,
     /// Physical pixels that the picture has on the screen.
     room: Option<[f32; 2]>,
@@ -98,6 +102,8 @@ impl Layout {
             filter: String::new(),
             middle: Middle::Picture,
             resource: resource::View::default(),
+            nodes: nodes::View::default(),
+            shows_lives: false,
             capture: capture::Form::default(),
             room: None,
             scenes: None,

@@ -74,7 +74,7 @@ fn rows(ui: &mut Ui, core: &Core, plan: &Plan, layout: &mut Layout, actions: &mu
 }
 
 /// Why a pass ran or did not.
-fn why(unit: Option<&UnitReport>) -> String {
+pub fn why(unit: Option<&UnitReport>) -> String {
     match unit {
         None => "runs with each step, or is switched off".into(),
         Some(unit) if !unit.ran => "skipped: nothing that it depends on has changed".into(),
