@@ -74,7 +74,7 @@ fn random_graphs_raise_no_error(engine: &mut Engine) {
     let asked = std::env::var("MENISCUS_GRAPHS").ok().and_then(|count| count.parse().ok());
     for seed in 0..asked.unwrap_or(GRAPHS) {
         let graph = grow(&numbers(seed));
-        let plan = plan(engine, &graph);
+        let mut plan = plan(engine, &graph);
         kinds.extend(plan.passes.iter().map(|pass| match &pass.kind {
             PassKind::Compute { .. } => "compute",
             PassKind::Draw(_) => "draw",
@@ -84,7 +84,7 @@ fn random_graphs_raise_no_error(engine: &mut Engine) {
             PassKind::Settle { .. } => "settle",
             PassKind::Arguments { .. } => "arguments",
         }));
-        engine.policy = if seed % 2 == 0 { Policy::Keep } else { Policy::Smallest };
+        plan.memory.policy = if seed % 2 == 0 { Policy::Keep } else { Policy::Smallest };
         if let Err(found) = run(engine, plan) {
             panic!("seed {seed}: {:?}\n{}", found.iter().map(|d| &d.message).collect::<Vec<_>>(), graph.graph);
         }

@@ -14,6 +14,7 @@ pub(super) fn base(program: &Program, device: &Device) -> Request {
         inputs: Default::default(),
         capacities: Default::default(),
         roots: Vec::new(),
+        memory: Default::default(),
         features: device.features,
         limits: device.limits.clone(),
     };

@@ -5,6 +5,8 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
+use crate::plan::model::Policy;
+
 /// Data-driven render graphs: checked, planned, run and reloaded.
 #[derive(Debug, Parser)]
 #[command(name = "meniscus", version, about, propagate_version = true, disable_help_subcommand = true)]
@@ -69,9 +71,41 @@ pub struct SceneArgs {
     /// A place in metres that the pointer holds pressed, seen from the camera
     #[arg(long, value_name = "X,Y,Z", value_parser = triple, allow_hyphen_values = true)]
     pub pointer: Option<[f64; 3]>,
+    #[command(flatten)]
+    pub memory: MemoryArgs,
     /// The graphics interface to use
     #[arg(long, value_name = "NAME", value_parser = ["vulkan", "metal", "dx12", "gl"])]
     pub backend: Option<String>,
+}
+
+/// How resources share memory.
+#[derive(Args, Clone, Copy, Debug, Default)]
+pub struct MemoryArgs {
+    /// How resources share memory: `keep` what skipping needs, `smallest` if every pass runs in each frame;
+    /// `auto` goes by what changes, and by the budget
+    #[arg(long, value_enum, value_name = "POLICY", default_value_t = PolicyArg::Auto)]
+    pub policy: PolicyArg,
+    /// The most that textures and buffers may take: bytes, or with KiB, MiB or GiB behind
+    #[arg(long, value_name = "BYTES", value_parser = byte_count)]
+    pub memory_budget: Option<u64>,
+}
+
+impl MemoryArgs {
+    pub fn policy(&self) -> Option<Policy> {
+        match self.policy {
+            PolicyArg::Auto => None,
+            PolicyArg::Keep => Some(Policy::Keep),
+            PolicyArg::Smallest => Some(Policy::Smallest),
+        }
+    }
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum PolicyArg {
+    #[default]
+    Auto,
+    Keep,
+    Smallest,
 }
 
 #[derive(Args, Clone, Debug)]
@@ -169,6 +203,8 @@ pub struct PlanArgs {
     /// A parameter's value, by its instance path; may be given many times
     #[arg(long = "set", value_name = "NAME=VALUE", value_parser = assignment)]
     pub set: Vec<(String, String)>,
+    #[command(flatten)]
+    pub memory: MemoryArgs,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -284,6 +320,23 @@ fn fov(text: &str) -> Result<f64, String> {
 fn seconds(text: &str) -> Result<f64, String> {
     let time = number(text)?;
     if time.is_finite() && time >= 0.0 { Ok(time) } else { Err("a time is finite and not below 0".into()) }
+}
+
+/// `1048576`, `64 MiB`, `1.5GiB`.
+fn byte_count(text: &str) -> Result<u64, String> {
+    let expected = || "expected a number of bytes, such as 1048576, 64MiB or 1.5GiB".to_owned();
+    let text = text.trim();
+    let end = text.find(|c: char| c.is_ascii_alphabetic()).unwrap_or(text.len());
+    let (number, unit) = text.split_at(end);
+    let scale = match unit.to_ascii_lowercase().as_str() {
+        "" | "b" => 1.0,
+        "kib" => 1024.0,
+        "mib" => 1024.0 * 1024.0,
+        "gib" => 1024.0 * 1024.0 * 1024.0,
+        _ => return Err(expected()),
+    };
+    let bytes = number.trim().parse::<f64>().map_err(|_| expected())? * scale;
+    if bytes.is_finite() && bytes >= 1.0 { Ok(bytes as u64) } else { Err(expected()) }
 }
 
 fn frames(text: &str) -> Result<FrameRange, String> {

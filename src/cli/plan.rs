@@ -56,6 +56,8 @@ fn of_graph(args: &PlanArgs, sources: &mut Sources) -> Result<(Plan, Diagnostics
     let mut request = check::stand_in(&program);
     request.params = resolve(&given, &program, &mut found);
     request.viewport = args.size.unwrap_or(request.viewport);
+    request.memory.policy = args.memory.policy();
+    request.memory.budget = args.memory.memory_budget;
     if found.has_errors() {
         return Err(found);
     }
@@ -74,12 +76,12 @@ fn of_graph(args: &PlanArgs, sources: &mut Sources) -> Result<(Plan, Diagnostics
 /// The plan of a scene's graph, for what the scene has.
 fn of_scene(args: &PlanArgs, sources: &mut Sources) -> Result<(Plan, Diagnostics), Diagnostics> {
     let job = Job { source: args.graph.clone(), size: args.size, set: args.set.clone(), ..Job::default() };
+    let job = Job { policy: args.memory.policy(), memory_budget: args.memory.memory_budget, ..job };
     let loaded = load(&DiskFiles, sources, &job, &mut Cache::default());
     let mut found = loaded.diagnostics;
     let Some(content) = loaded.content else { return Err(found) };
     let stand_in = check::stand_in(&content.program);
-    let request = content.request(stand_in.features, stand_in.limits, &BTreeMap::new());
-    let plan = plan::instantiate(&content.program, &request)?;
+    let (plan, _) = content.plans(stand_in.features, stand_in.limits, &BTreeMap::new())?;
     found.extend(plan.warnings.clone());
     Ok((plan, found))
 }

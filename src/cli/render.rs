@@ -38,6 +38,7 @@ fn render(args: &RenderArgs, sources: &mut Sources) -> Result<Diagnostics, Diagn
     let mut job = job(&args.scene);
     job.transparent = args.transparent;
     job.when = pictures.first().map_or(When::Start, |(_, when)| *when);
+    job.plays = pictures.len() > 1;
     job.roots = dumps.iter().map(|d| d.path.clone()).collect();
     let loaded = load(&DiskFiles, sources, &job, &mut Cache::default());
     let mut notes = loaded.diagnostics;

@@ -24,6 +24,8 @@ pub fn job(args: &SceneArgs) -> Job {
         transparent: false,
         roots: Vec::new(),
         when: When::Start,
+        policy: args.memory.policy(),
+        memory_budget: args.memory.memory_budget,
         ..Job::default()
     }
 }

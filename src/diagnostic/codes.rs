@@ -125,6 +125,8 @@ codes! {
     NEEDS = "needs";
     /// More than the device can do.
     DEVICE_LIMIT = "device-limit";
+    /// More memory than a budget allows.
+    MEMORY_BUDGET = "memory-budget";
 
     // Scenes and assets
     /// A particle, image or mesh file that cannot be taken.

@@ -17,7 +17,7 @@ use super::prepare::{Engine, Runner};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::format::TextureFormat;
 use crate::plan::meshes::MaterialTexture;
-use crate::plan::model::{Bound, PassKind, Plan};
+use crate::plan::model::Plan;
 
 /// An image as a file stores it, 8 bits each way, rows from the top.
 #[derive(Clone, Copy, Debug)]
@@ -78,9 +78,8 @@ impl Materials {
     /// Those of the plan before, with what stands in where a plan draws with materials.
     pub fn new(gpu: &Gpu, plan: &Plan, previous: Option<&Materials>) -> Self {
         let mut materials = previous.cloned().unwrap_or_default();
-        let inputs = inputs(plan);
-        materials.sets.retain(|input, _| inputs.contains(&input.as_str()));
-        if materials.standing_in.is_none() && !inputs.is_empty() {
+        materials.sets.retain(|input, _| plan.binds_materials(input));
+        if materials.standing_in.is_none() && plan.materials().next().is_some() {
             let one = |label, texel: [u8; 4]| {
                 let texture = texture(gpu, label, [1, 1], TextureFormat::Rgba8Unorm);
                 write(gpu, &texture, &[texel]);
@@ -125,25 +124,10 @@ impl Materials {
     }
 }
 
-/// Inputs whose materials' textures a plan binds.
-fn inputs(plan: &Plan) -> Vec<&str> {
-    let draws = plan.passes.iter().filter_map(|pass| match &pass.kind {
-        PassKind::Draw(draw) => Some(&draw.shader.bindings),
-        _ => None,
-    });
-    draws
-        .flatten()
-        .filter_map(|binding| match &binding.bound {
-            Bound::MaterialTexture { input, .. } | Bound::MaterialSampler { input, .. } => Some(input.as_str()),
-            _ => None,
-        })
-        .collect()
-}
-
 impl Runner {
     /// Whether draws bind textures of this input's materials.
     pub fn wants_materials(&self, input: &str) -> bool {
-        inputs(&self.plan).contains(&input)
+        self.plan.binds_materials(input)
     }
 
     /// Whether the textures of this input's materials are there already.

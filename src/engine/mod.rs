@@ -39,9 +39,10 @@ pub use compile::{Compiled, Compiler};
 pub use errors::{any_device_gone, is_device_gone};
 pub use gpu::{AdapterSummary, Gpu, GpuOptions, wanted_features};
 pub use materials::{MaterialImage, MaterialSampler, MaterialSlots};
-pub use pool::Policy;
 pub use prepare::{Engine, Refused, Runner};
 pub use readback::TextureData;
 pub use report::{BuildReport, CountReport, PassReport, Report, UnitReport};
 pub use run::{Frame, StepInfo};
 pub use screen::Screen;
+
+pub use crate::plan::model::Policy;

@@ -12,16 +12,6 @@ use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::format;
 use crate::plan::model::{ObjectId, ObjectKind, ObjectRef, Origin, PassKind, Plan, Texture};
 
-/// Which objects share memory, see rule 38 of the language.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Policy {
-    /// What skipping needs is kept.
-    #[default]
-    Keep,
-    /// Every pass runs each frame; lifetimes alone decide.
-    Smallest,
-}
-
 /// A piece of memory.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Memory {
@@ -75,14 +65,8 @@ impl Pool {
     ///
     /// # Errors
     /// For each object that the device refuses.
-    pub fn new(
-        gpu: &Gpu,
-        plan: &Plan,
-        policy: Policy,
-        previous: Option<&Pool>,
-        state_kept: &[bool],
-    ) -> Result<Self, Diagnostics> {
-        let mut pool = Self::lay_out(gpu, plan, policy);
+    pub fn new(gpu: &Gpu, plan: &Plan, previous: Option<&Pool>, state_kept: &[bool]) -> Result<Self, Diagnostics> {
+        let mut pool = Self::lay_out(gpu, plan);
         if let Some(previous) = previous {
             pool.take_over(previous, state_kept);
         }
@@ -100,26 +84,21 @@ impl Pool {
         if found.is_empty() { Ok(pool) } else { Err(found) }
     }
 
-    fn lay_out(gpu: &Gpu, plan: &Plan, policy: Policy) -> Self {
+    fn lay_out(gpu: &Gpu, plan: &Plan) -> Self {
         let mut descriptions: Vec<_> = plan.objects.iter().map(|o| describe(&o.kind)).collect();
         widen(gpu, plan, &mut descriptions);
-        let groups = match policy {
-            Policy::Keep => &plan.memory.keep,
-            Policy::Smallest => &plan.memory.smallest,
-        };
+        let groups = plan.memory.slots(plan.memory.policy);
         let mut of: Vec<Option<Handle>> = vec![None; plan.objects.len()];
         let mut slots: Vec<Slot> = Vec::new();
         let singles = (0..plan.objects.len()).map(|id| vec![id]);
         for group in groups.iter().map(|slot| slot.objects.clone()).chain(singles) {
+            // The slot of the group, as long as all fit.
+            let mut open: Option<usize> = None;
             for id in group {
-                // Joins the group's slot if that is the last one and fits, else has its own.
                 if of.get(id).is_none_or(Option::is_some) {
                     continue;
                 }
-                let joined = slots
-                    .last_mut()
-                    .filter(|slot| groups.iter().any(|g| g.objects.contains(&id) && g.objects.contains(&slot.first)));
-                let joined = joined.is_some_and(|slot| {
+                let joined = open.map(|at| &mut slots[at]).is_some_and(|slot| {
                     let fits = merge(&mut slot.description, &descriptions[id]);
                     slot.members += usize::from(fits);
                     fits
@@ -134,6 +113,7 @@ impl Pool {
                         memory: None,
                         foreign: false,
                     });
+                    open = Some(slots.len() - 1);
                 }
                 of[id] = Some(Handle(slots.len() - 1));
             }

@@ -17,7 +17,7 @@ use super::materials::Materials;
 use super::meshes::{self, ByFaces};
 use super::mips;
 use super::pipeline::{Pipeline, Recipe, RecipeKind, Source, Stage};
-use super::pool::{Policy, Pool};
+use super::pool::Pool;
 use super::report::{BuildReport, Report};
 use super::run::{StepInfo, Variants};
 use super::timing::Timing;
@@ -33,8 +33,6 @@ pub struct Engine {
     gpu: Gpu,
     compiler: Compiler,
     claims: Claims,
-    /// Which objects share memory, from the next preparation on.
-    pub policy: Policy,
 }
 
 /// A plan made ready to run, with its memory.
@@ -77,7 +75,6 @@ pub struct Runner {
     pub(super) before: (Vec<usize>, Vec<u64>),
     /// Whether passes run whose results are there already.
     pub(super) runs_all: bool,
-    pub(super) policy: Policy,
     pub(super) loads_are_free: bool,
     pub(super) last: Option<Report>,
     build: BuildReport,
@@ -93,7 +90,7 @@ pub struct Refused {
 
 impl Engine {
     pub fn new(gpu: Gpu) -> Self {
-        Self { compiler: Compiler::new(&gpu), gpu, claims: Claims::default(), policy: Policy::default() }
+        Self { compiler: Compiler::new(&gpu), gpu, claims: Claims::default() }
     }
 
     pub fn gpu(&self) -> &Gpu {
@@ -122,7 +119,7 @@ impl Engine {
         check_features(&self.gpu, &plan)?;
         let (pipelines, by_faces, compiled) = self.compiler.pipelines(&plan)?;
         let state_kept = state_kept(&plan, previous);
-        let pool = Pool::new(&self.gpu, &plan, self.policy, previous.map(|p| &p.pool), &state_kept)?;
+        let pool = Pool::new(&self.gpu, &plan, previous.map(|p| &p.pool), &state_kept)?;
         let uniforms = Uniforms::new(&self.gpu, &plan)?;
         let fixed = errors::scoped(&self.gpu, || Fixed::new(&self.gpu, &plan))
             .map_err(|e| Diagnostic::error(Code::DEVICE, format!("the device refused the engine's buffers: {e}")))?;
@@ -145,7 +142,6 @@ impl Engine {
             steps_in_order: steps_in_order(&plan),
             before: (Vec::with_capacity(rotation.len()), Vec::with_capacity(done.len())),
             runs_all: previous.is_some_and(|p| p.runs_all),
-            policy: self.policy,
             pipelines,
             by_faces,
             materials,

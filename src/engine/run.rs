@@ -8,12 +8,11 @@ use super::bind::{Bench, Variant, references};
 use super::encode::Recorder;
 use super::errors;
 use super::gpu::Gpu;
-use super::pool::Policy;
 use super::prepare::{Engine, Runner};
 use super::report::Report;
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::graph::value::Value;
-use crate::plan::model::{ObjectRef, PassKind, Plan};
+use crate::plan::model::{ObjectRef, Origin, PassKind, Plan, Policy};
 
 /// What changes from frame to frame.
 #[derive(Clone, Copy)]
@@ -121,7 +120,7 @@ impl Runner {
         let live =
             |name: &str, step: Option<&StepInfo>| (frame.live)(name, step).or_else(|| own_value(frame, name, step));
         self.notice(&|name| live(name, None));
-        let runs_any = self.changes.decide(frame.steps, self.runs_all, self.policy == Policy::Smallest);
+        let runs_any = self.changes.decide(frame.steps, self.runs_all, self.plan.memory.policy == Policy::Smallest);
         self.timing.begin(gpu, &self.plan, frame.frame, runs(&self.plan, steps));
         self.timing.decided(self.changes.decision());
         if !runs_any {
@@ -239,6 +238,10 @@ impl Runner {
         }
         let mut found = Diagnostics::new();
         for object in 0..self.plan.objects.len() {
+            // What passes write had its memory from the start, if any pass does.
+            if self.plan.objects[object].origin == Origin::Frame {
+                continue;
+            }
             match self.pool.ensure(gpu, &self.plan, object) {
                 Ok(true) => self.forget_variants(object),
                 Ok(false) => {}

@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 
-use wgpu_types::TextureUsages;
+use wgpu_types::{Features, Limits, TextureUsages};
 
 use super::inputs::Input;
 use super::load::{COLOR, Content};
@@ -15,7 +15,7 @@ use crate::engine::{Compiled, Compiler, Engine, Gpu, MaterialImage, MaterialSamp
 use crate::graph::value::Value;
 use crate::plan;
 use crate::plan::meshes::MeshBuffer;
-use crate::plan::model::{Buffer, Object, ObjectId, ObjectKind, ObjectRef, Origin, Plan, Texture};
+use crate::plan::model::{Buffer, MemoryRequest, Object, ObjectId, ObjectKind, ObjectRef, Origin, Plan, Texture};
 use crate::scene::meshes::{Filter, Sampler, Wrap};
 use crate::scene::{PointerPath, Pointing, convert};
 use crate::shader::reflect::Type;
@@ -220,17 +220,7 @@ impl Builder {
     pub fn plan(&self, content: Content) -> Result<Planned, Diagnostics> {
         let gpu = self.compiler.gpu();
         check_size(content.viewport, &gpu.limits())?;
-        let request = content.request(gpu.features(), gpu.limits(), &self.capacities);
-        let mut plan = plan::instantiate(&content.program, &request)?;
-        let (id, color) = picture(&plan)?;
-        let request = content.present_request(color, gpu.features(), gpu.limits());
-        let mut present = plan::instantiate(&content.present, &request)?;
-        share_usages(&mut plan, id, &present);
-        let (id, _) = picture(&present)?;
-        if let ObjectKind::Texture(texture) = &mut present.objects[id].kind {
-            // Windows sample it.
-            texture.usages |= TextureUsages::TEXTURE_BINDING;
-        }
+        let (plan, present) = content.plans(gpu.features(), gpu.limits(), &self.capacities)?;
         Ok(Planned { content, plan, present, compiled: Compiled::default() })
     }
 
@@ -246,7 +236,54 @@ impl Builder {
     }
 }
 
-fn check_size(viewport: [u32; 2], limits: &wgpu_types::Limits) -> Result<(), Diagnostic> {
+impl Content {
+    /// The plans of the content's graph and of the one that presents it, both within the budget.
+    ///
+    /// # Errors
+    /// With everything that planning finds.
+    pub fn plans(
+        &self,
+        features: Features,
+        limits: Limits,
+        capacities: &BTreeMap<String, u64>,
+    ) -> Result<(Plan, Plan), Diagnostics> {
+        let request = self.request(features, limits.clone(), capacities);
+        let mut plan = plan::instantiate(&self.program, &request)?;
+        let (id, color) = picture(&plan)?;
+        let mut present = plan::instantiate(&self.present, &self.present_request(color, features, limits))?;
+        share_usages(&mut plan, id, &present);
+        let (id, _) = picture(&present)?;
+        if let ObjectKind::Texture(texture) = &mut present.objects[id].kind {
+            // Windows sample it.
+            texture.usages |= TextureUsages::TEXTURE_BINDING;
+        }
+        let elsewhere = presenting_bytes(&present) + self.material_bytes(&plan);
+        plan.choose_memory(&MemoryRequest { elsewhere, ..self.memory.clone() }).map_err(|found| *found)?;
+        Ok((plan, present))
+    }
+
+    /// Bytes of the textures of materials that a plan binds.
+    fn material_bytes(&self, plan: &Plan) -> u64 {
+        let of_input = |(name, input): (&String, &Input)| match input {
+            Input::Meshes(meshes) if plan.binds_materials(name) => {
+                let texels = meshes.images.iter().map(|(image, _)| u64::from(image.width) * u64::from(image.height));
+                // Four bytes, and a third of that for mips.
+                texels.map(|texels| texels * 16 / 3).sum()
+            }
+            _ => 0,
+        };
+        self.inputs.iter().map(of_input).sum()
+    }
+}
+
+/// Bytes that the presenting graph holds: the picture is not its own.
+fn presenting_bytes(present: &Plan) -> u64 {
+    let color = present.objects.iter().find(|object| is_color(object));
+    let not_its_own = color.map_or(0, |object| plan::memory::bytes(&object.kind));
+    present.memory.held(present.memory.policy).saturating_sub(not_its_own)
+}
+
+fn check_size(viewport: [u32; 2], limits: &Limits) -> Result<(), Diagnostic> {
     let most = limits.max_texture_dimension_2d;
     if viewport.iter().all(|side| *side <= most) {
         return Ok(());

@@ -17,7 +17,7 @@ use super::source;
 use crate::diagnostic::{Code, Diagnostic, Diagnostics, Sources, Span};
 use crate::files::{self, Files, Kind};
 use crate::graph::value::Value;
-use crate::plan::model::{InputInfo, Request, Texture};
+use crate::plan::model::{InputInfo, MemoryRequest, Policy, Request, Texture};
 use crate::program::{self, Program, missing_file};
 use crate::scene::sequence::Sequence;
 use crate::scene::{self, Camera, Item, MeshEntry, PointerPath, Scene, framing};
@@ -62,6 +62,12 @@ pub struct Job {
     pub meshes: Vec<(String, PathBuf)>,
     /// A picture in place of the scene's environment.
     pub environment: Option<PathBuf>,
+    /// How memory is shared; absent: by what changes.
+    pub policy: Option<Policy>,
+    /// Bytes of textures and buffers that may be held.
+    pub memory_budget: Option<u64>,
+    /// One picture after another is made, so that sequences move from each to the next.
+    pub plays: bool,
 }
 
 /// Everything that a picture is made of.
@@ -80,6 +86,8 @@ pub struct Content {
     pub roots: Vec<String>,
     /// Numbered files that inputs are frames of, in the order of the scene.
     pub tracks: Vec<Track>,
+    /// What is asked of memory.
+    pub memory: MemoryRequest,
 }
 
 /// What loading gave.
@@ -143,6 +151,7 @@ impl Loader<'_> {
         let roots = self.job.roots.clone();
         let (params, present_params) = (own, shared);
         let tracks = decoded.tracks;
+        let memory = self.memory(&tracks, &inputs);
         Some(Content {
             program,
             present,
@@ -154,6 +163,7 @@ impl Loader<'_> {
             present_params,
             roots,
             tracks,
+            memory,
         })
     }
 
@@ -174,6 +184,16 @@ impl Loader<'_> {
             let value = said(path.display().to_string());
             scene.textures.push(Item { name: said(ENVIRONMENT.into()), value, span });
         }
+    }
+
+    /// What is asked of memory, with the inputs that each picture has others of.
+    fn memory(&self, tracks: &[Track], inputs: &BTreeMap<String, Input>) -> MemoryRequest {
+        let moving = |(name, input): &(&String, &Input)| {
+            let is_played = tracks.iter().any(|t| t.input == **name && t.frames.start() < t.frames.end());
+            is_played || matches!(input, Input::Meshes(meshes) if meshes.info.animated)
+        };
+        let moving = inputs.iter().filter(|_| self.job.plays).filter(moving).map(|(name, _)| name.clone()).collect();
+        MemoryRequest { policy: self.job.policy, budget: self.job.memory_budget, elsewhere: 0, moving }
     }
 
     fn graph(&mut self, scene: &Scene) -> Option<Program> {
@@ -445,6 +465,8 @@ impl Content {
             inputs: self.inputs.iter().map(|(name, input)| (name.clone(), input.info())).collect(),
             capacities: capacities.clone(),
             roots: self.roots.clone(),
+            // The budget is looked at once it is known what the rest takes.
+            memory: MemoryRequest { budget: None, ..self.memory.clone() },
             features,
             limits,
         }
@@ -461,6 +483,7 @@ impl Content {
             inputs,
             capacities: BTreeMap::new(),
             roots: Vec::new(),
+            memory: MemoryRequest::default(),
             features,
             limits,
         }

@@ -54,21 +54,41 @@ pub(super) fn share(
     let of_frame: Vec<ObjectId> = (0..objects.len())
         .filter(|id| objects[*id].origin == Origin::Frame && objects[*id].lifetime.is_some())
         .collect();
-    let may_always: Vec<bool> = (0..objects.len()).map(|id| !own.contains(&id)).collect();
-    let may_keep: Vec<bool> =
-        may_always.iter().zip(same_causes(objects.len(), runs, touched, units)).map(|(a, b)| *a && b).collect();
-    let keep = slots(objects, &of_frame, &may_keep);
-    let mut smallest = slots(objects, &of_frame, &may_always);
+    let kept = same_causes(objects.len(), runs, touched, units);
+    // What is looked at after the frame lives to its end, and is there until the next.
+    let lives: Vec<Life> = (of_frame.iter())
+        .filter_map(|id| {
+            let (first, last) = objects[*id].lifetime?;
+            let last = if own.contains(id) { runs.len().saturating_sub(1) } else { last };
+            Some(Life { id: *id, first, last, bytes: bytes(&objects[*id].kind) })
+        })
+        .collect();
+    let keep = slots(objects, &lives, &|id| kept[id] && !own.contains(&id));
+    let mut smallest = slots(objects, &lives, &|_| true);
     // More freedom may lead a greedy choice astray; what may be kept is good enough for both then.
     if total(&smallest) > total(&keep) {
         smallest.clone_from(&keep);
     }
+    let (largest_at, lower_bound) = largest(&lives, runs.len());
     Memory {
         keep,
         smallest,
-        unshared: of_frame.iter().map(|id| bytes(&objects[*id].kind)).sum(),
-        lower_bound: lower_bound(objects, &of_frame, own, runs.len()),
+        unshared: lives.iter().map(|life| life.bytes).sum(),
+        lower_bound,
+        largest_at,
+        alike_bound: alike_bound(objects, &lives, runs.len()),
+        outside: objects.iter().filter(|o| o.origin != Origin::Frame).map(|o| bytes(&o.kind)).sum(),
+        ..Memory::default()
     }
+}
+
+/// From which pass to which an object has to have memory.
+#[derive(Clone, Copy)]
+struct Life {
+    id: ObjectId,
+    first: usize,
+    last: usize,
+    bytes: u64,
 }
 
 /// Bytes of all slots together.
@@ -96,17 +116,15 @@ fn same_causes(objects: usize, runs: &[Runs], touched: &[Vec<ObjectId>], units: 
 
 /// Gives every object a slot, in order of first use: a free one of its class (the smallest that
 /// is large enough, else the largest), else a new one.
-fn slots(objects: &[Object], of_frame: &[ObjectId], may: &[bool]) -> Vec<Slot> {
-    let mut order = of_frame.to_vec();
-    order.sort_by_key(|id| (objects[*id].lifetime, *id));
+fn slots(objects: &[Object], lives: &[Life], may: &dyn Fn(ObjectId) -> bool) -> Vec<Slot> {
+    let mut order = lives.to_vec();
+    order.sort_by_key(|life| (objects[life.id].lifetime, life.id));
     let mut slots: Vec<Slot> = Vec::new();
     // Slots in use by the pass at which they become free; free ones by class and size.
     let mut busy: BinaryHeap<Reverse<(usize, usize)>> = BinaryHeap::new();
     let mut free: HashMap<Option<Texture>, BTreeSet<(u64, usize)>> = HashMap::new();
-    for id in order {
-        let Some((first, last)) = objects[id].lifetime else { continue };
-        let size = bytes(&objects[id].kind);
-        if !may[id] {
+    for Life { id, first, last, bytes: size } in order {
+        if !may(id) {
             slots.push(Slot { objects: vec![id], bytes: size });
             continue;
         }
@@ -170,24 +188,29 @@ pub(super) fn live_at_once<'a>(
     live.max().unwrap_or(0).max(0) as u64
 }
 
-fn lower_bound(objects: &[Object], of_frame: &[ObjectId], own: &BTreeSet<ObjectId>, passes: usize) -> u64 {
+/// The first pass at which the most bytes are live, and how many.
+fn largest(lives: &[Life], passes: usize) -> (usize, u64) {
     // Bytes that begin and end at each pass; a running sum is the live set.
     let mut change = vec![0i64; passes + 1];
-    for id in of_frame {
-        let Some((first, last)) = objects[*id].lifetime else { continue };
-        let size = bytes(&objects[*id].kind) as i64;
-        let last = if own.contains(id) { passes.saturating_sub(1) } else { last };
-        change[first] += size;
-        change[last + 1] -= size;
+    for life in lives {
+        change[life.first] += life.bytes as i64;
+        change[life.last + 1] -= life.bytes as i64;
     }
-    let mut live = 0;
-    change
-        .iter()
-        .map(|c| {
-            live += c;
-            live
-        })
-        .max()
-        .unwrap_or(0)
-        .max(0) as u64
+    let (mut at, mut most, mut live) = (0, 0, 0);
+    for (pass, change) in change.iter().enumerate() {
+        live += change;
+        if live > most {
+            (at, most) = (pass, live);
+        }
+    }
+    (at, most.max(0) as u64)
+}
+
+/// Bytes of the largest live sets of those that can share, one class after another.
+fn alike_bound(objects: &[Object], lives: &[Life], passes: usize) -> u64 {
+    let mut classes: HashMap<Option<Texture>, Vec<Life>> = HashMap::new();
+    for life in lives {
+        classes.entry(class(&objects[life.id].kind)).or_default().push(*life);
+    }
+    classes.values().map(|alike| largest(alike, passes).1).sum()
 }

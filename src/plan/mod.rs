@@ -4,6 +4,7 @@
 //! runs without an error of wgpu's on a device that has what [`model::Needs`] says, or is
 //! diagnostics.
 
+mod budget;
 pub mod changes;
 mod cull;
 pub mod fields;
@@ -144,7 +145,8 @@ fn finish(
         warnings.push(diagnostic);
     }
     let names = names(&lowering);
-    Ok(Plan {
+    let asked = &lowering.request.memory;
+    let mut plan = Plan {
         graph: lowering.program.root.path.clone(),
         viewport: lowering.request.viewport,
         modules: lowering.modules,
@@ -167,7 +169,9 @@ fn finish(
         taken: lowering.program.taken(),
         argument_slots,
         warnings,
-    })
+    };
+    plan.choose_memory(asked).map_err(|found| *found)?;
+    Ok(plan)
 }
 
 /// Parameters that were asked for by a name that nothing bears.

@@ -11,6 +11,7 @@ use std::sync::Arc;
 
 use wgpu_types::{BufferUsages, Features, TextureUsages};
 
+pub use self::memory::*;
 pub use self::pass::*;
 pub use self::request::*;
 use crate::diagnostic::{Diagnostics, Span};
@@ -21,6 +22,7 @@ use crate::graph::value::Value;
 use crate::plan::meshes::MeshBuffer;
 use crate::shader::reflect::{Module, Type};
 
+mod memory;
 mod pass;
 mod request;
 
@@ -75,6 +77,23 @@ impl Plan {
         let is_it = |object: &&Object| object.origin != Origin::Frame && object.path == path;
         let (id, object) = self.objects.iter().enumerate().find(|(_, object)| is_it(object))?;
         Some((id, &object.kind))
+    }
+
+    /// Inputs whose materials' textures passes bind, some more than once.
+    pub(crate) fn materials(&self) -> impl Iterator<Item = &str> {
+        let draws = self.passes.iter().filter_map(|pass| match &pass.kind {
+            PassKind::Draw(draw) => Some(&draw.shader.bindings),
+            _ => None,
+        });
+        draws.flatten().filter_map(|binding| match &binding.bound {
+            Bound::MaterialTexture { input, .. } | Bound::MaterialSampler { input, .. } => Some(input.as_str()),
+            _ => None,
+        })
+    }
+
+    /// Whether passes bind the textures of an input's materials.
+    pub fn binds_materials(&self, input: &str) -> bool {
+        self.materials().any(|bound| bound == input)
     }
 }
 
@@ -285,26 +304,6 @@ pub struct Output {
     pub object: ObjectRef,
     /// Where the graph puts it out.
     pub span: Span,
-}
-
-/// Which objects share memory, under both policies of rule 38.
-#[derive(Clone, Debug, PartialEq, Default)]
-pub struct Memory {
-    /// Groups of objects that share one piece of memory while everything that skipping needs is
-    /// kept.
-    pub keep: Vec<Slot>,
-    /// The same when every unit runs each frame.
-    pub smallest: Vec<Slot>,
-    /// Bytes of all objects of the frame, each on its own.
-    pub unshared: u64,
-    /// Bytes of the largest set that is live at once: no plan can hold less.
-    pub lower_bound: u64,
-}
-
-#[derive(Clone, Debug, PartialEq)]
-pub struct Slot {
-    pub objects: Vec<ObjectId>,
-    pub bytes: u64,
 }
 
 /// What a device must offer, beyond nothing.

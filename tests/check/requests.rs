@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use meniscus::diagnostic::{Sources, Style, render_all};
 use meniscus::graph::value::Value;
-use meniscus::plan::{instantiate, model::InputInfo, model::Request};
+use meniscus::plan::{instantiate, model::InputInfo, model::Policy, model::Request};
 use meniscus::program;
 use wgpu_types::{Features, Limits};
 
@@ -57,6 +57,7 @@ fn request() -> Request {
         inputs: [("particles".to_owned(), particles)].into(),
         capacities: BTreeMap::new(),
         roots: Vec::new(),
+        memory: Default::default(),
         features: Features::FLOAT32_BLENDABLE,
         limits: Limits::default(),
     }
@@ -155,5 +156,18 @@ fn more_particles_than_the_device_can_bind() {
             *count = 100_000_000;
         }
         r.roots.push("speeds".into());
+    });
+}
+
+#[test]
+fn a_budget_that_no_policy_keeps_to() {
+    expect("memory_budget", |r| r.memory.budget = Some(50_000));
+}
+
+#[test]
+fn a_budget_that_the_policy_asked_for_does_not_keep_to() {
+    expect("memory_budget_of_policy", |r| {
+        r.memory.policy = Some(Policy::Keep);
+        (r.memory.budget, r.memory.elsewhere) = (Some(100_000), 30_000);
     });
 }

@@ -146,8 +146,8 @@ pub fn objects_share_memory_as_the_policy_says(engine: &mut Engine) {
     assert_eq!(runner.memory_bytes(), 3 * 64 * 64 * 4);
     run(engine, &mut runner);
     assert_eq!(texels(engine, &runner, ids[1], 0, 0)[0][0], 1.0);
-    engine.policy = Policy::Smallest;
-    let (smallest, ids) = plan();
+    let (mut smallest, ids) = plan();
+    smallest.memory.policy = Policy::Smallest;
     let runner = engine.prepare(smallest, Some(runner)).unwrap();
     assert_eq!(runner.memory_bytes(), 2 * 64 * 64 * 4);
     assert_eq!(runner.texture(ObjectRef::Fixed(ids[0])).unwrap(), runner.texture(ObjectRef::Fixed(ids[2])).unwrap());

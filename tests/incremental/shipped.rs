@@ -100,7 +100,7 @@ impl<'e> Shipped<'e> {
         let mut plan = self.plan();
         (self.alter)(&mut plan);
         let before = self.skips.take();
-        self.engine.policy = self.policy;
+        plan.memory.policy = self.policy;
         let prepared = self.engine.prepare(plan, before);
         self.skips = Some(prepared.unwrap_or_else(|refused| panic!("{}: {:#?}", self.name, refused.diagnostics)));
         if self.full.is_some() {
@@ -109,8 +109,8 @@ impl<'e> Shipped<'e> {
     }
 
     fn prepare_full(&mut self) {
-        let (plan, before) = (self.plan(), self.full.take());
-        self.engine.policy = Policy::Smallest;
+        let (mut plan, before) = (self.plan(), self.full.take());
+        plan.memory.policy = Policy::Smallest;
         let prepared = self.engine.prepare(plan, before);
         self.full = Some(prepared.unwrap_or_else(|refused| panic!("{}: {:#?}", self.name, refused.diagnostics)));
         self.full.as_mut().unwrap().run_all(true);

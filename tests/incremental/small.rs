@@ -233,8 +233,9 @@ pub fn everything_runs_if_asked_for(engine: &mut Engine) {
     let mut runner = prepare(engine, sharing(), Some(runner));
     assert_eq!(run(engine, &mut runner, &STILL).passes.len(), 5, "also after a plan");
     runner.run_all(false);
-    engine.policy = Policy::Smallest;
-    let mut runner = prepare(engine, sharing(), Some(runner));
+    let mut smallest = sharing();
+    smallest.memory.policy = Policy::Smallest;
+    let mut runner = prepare(engine, smallest, Some(runner));
     run(engine, &mut runner, &STILL);
     assert!(ran(&run(engine, &mut runner, &STILL)).is_empty());
     let report = run(engine, &mut runner, &Now { time: 4.0, ..STILL });

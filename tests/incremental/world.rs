@@ -77,12 +77,12 @@ impl<'e> World<'e> {
 
     /// Plans anew and swaps both runners.
     pub fn prepare(&mut self) {
-        let plan = self.plan();
+        let mut plan = self.plan();
         let mut altered = plan.clone();
         (self.alter)(&mut altered);
-        self.engine.policy = self.policy;
+        altered.memory.policy = self.policy;
+        plan.memory.policy = Policy::Smallest;
         self.skips = Some(prepare(self.engine, altered, self.skips.take()));
-        self.engine.policy = Policy::Smallest;
         let mut full = prepare(self.engine, plan, self.full.take());
         full.run_all(true);
         self.full = Some(full);

@@ -75,6 +75,8 @@ pub(super) struct Counters {
 
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Memory {
+    /// "keep" or "smallest", of the graph.
+    pub policy: String,
     pub held_bytes: u64,
     pub unshared_bytes: u64,
     pub lower_bound_bytes: u64,
@@ -143,6 +145,7 @@ impl Subject {
         }
         self.measured.adapter = session.gpu().info().name;
         if let Some(plan) = session.plan() {
+            self.measured.memory.policy = plan.memory.policy.name().into();
             self.measured.memory.unshared_bytes = plan.memory.unshared;
             self.measured.memory.lower_bound_bytes = plan.memory.lower_bound;
         }

@@ -40,7 +40,11 @@ pub(super) fn table(m: &Measured, comparison: Option<&Comparison>) -> String {
         bytes(c.uploaded_bytes)
     );
     let [held, unshared, lower] = [m.memory.held_bytes, m.memory.unshared_bytes, m.memory.lower_bound_bytes].map(bytes);
-    _ = writeln!(text, "memory: {held} held; {unshared} without reuse, {lower} live at once");
+    _ = writeln!(
+        text,
+        "memory: {held} held, policy \"{}\"; of the frame {unshared} without sharing, {lower} in the largest live set",
+        m.memory.policy
+    );
     if let Some(comparison) = comparison {
         text.push_str(&comparison.text());
     }

@@ -32,6 +32,7 @@ pub(super) fn json(m: &Measured, comparison: Option<&Comparison>) -> Value {
             "uploaded_bytes": m.counters.uploaded_bytes,
         },
         "memory": {
+            "policy": m.memory.policy,
             "held_bytes": m.memory.held_bytes,
             "unshared_bytes": m.memory.unshared_bytes,
             "lower_bound_bytes": m.memory.lower_bound_bytes,

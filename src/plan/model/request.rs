@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use wgpu_types::{Features, Limits};
 
-use super::Texture;
+use super::{MemoryRequest, Texture};
 use crate::graph::value::Value;
 use crate::plan::meshes::MeshesInfo;
 
@@ -19,6 +19,7 @@ pub struct Request {
     pub capacities: BTreeMap<String, u64>,
     /// Instance paths that somebody asks for besides the first output.
     pub roots: Vec<String>,
+    pub memory: MemoryRequest,
     pub features: Features,
     pub limits: Limits,
 }
@@ -33,6 +34,7 @@ impl Request {
             inputs: BTreeMap::new(),
             capacities: BTreeMap::new(),
             roots: Vec::new(),
+            memory: MemoryRequest::default(),
             features,
             limits,
         }

@@ -74,10 +74,17 @@ fn value(plan: &Plan) -> Json {
             })).collect::<Vec<_>>(),
         })).collect::<Vec<_>>(),
         "memory": {
+            "policy": plan.memory.policy.name(),
+            "why": plan.memory.why.to_string(),
+            "held_bytes": plan.memory.held(plan.memory.policy),
+            "budget_bytes": plan.memory.budget,
+            "inputs_and_state_bytes": plan.memory.outside,
             "keep": slots(&plan.memory.keep),
             "smallest": slots(&plan.memory.smallest),
             "unshared_bytes": plan.memory.unshared,
+            "alike_live_sets_bytes": plan.memory.alike_bound,
             "largest_live_set_bytes": plan.memory.lower_bound,
+            "largest_live_set_at": plan.memory.largest_at,
         },
         "argument_slots": plan.argument_slots,
         "needs": {

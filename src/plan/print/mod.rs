@@ -10,5 +10,6 @@ mod text;
 pub use describe::{bytes, object, pass};
 pub use dot::dot;
 pub use json::json;
+pub(crate) use rows::id as object_id;
 pub use svg::svg;
 pub use text::text;

@@ -167,19 +167,19 @@ pub fn what(plan: &Plan, row: &Row) -> String {
     if row.times > 1 { format!("{text}, {} times", row.times) } else { text }
 }
 
-/// The passes of the device, under the keeping policy.
+/// The passes of the device, under the plan's policy.
 pub fn shared_passes(plan: &Plan) -> Vec<Shared> {
     let mut first: Vec<ObjectId> = (0..plan.objects.len()).collect();
-    for slot in &plan.memory.keep {
+    for slot in plan.memory.slots(plan.memory.policy) {
         slot.objects.iter().for_each(|id| first[*id] = slot.objects[0]);
     }
     merge::shared(plan, &|id| first[id])
 }
 
-/// For each object the label of the memory that it shares under the keeping policy.
+/// For each object the label of the memory that it shares under the plan's policy.
 pub fn shared(plan: &Plan) -> BTreeMap<ObjectId, String> {
     let mut labels = BTreeMap::new();
-    for (n, slot) in plan.memory.keep.iter().filter(|slot| slot.objects.len() > 1).enumerate() {
+    for (n, slot) in plan.memory.slots(plan.memory.policy).iter().filter(|slot| slot.objects.len() > 1).enumerate() {
         labels.extend(slot.objects.iter().map(|id| (*id, format!("m{n}"))));
     }
     labels

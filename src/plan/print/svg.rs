@@ -93,8 +93,12 @@ fn lanes(plan: &Plan) -> Vec<Lane> {
     let outside = (0..plan.objects.len())
         .filter(|id| plan.objects[*id].lifetime.is_some() && plan.objects[*id].origin != Origin::Frame)
         .map(single);
-    let mut frame: Vec<Lane> =
-        plan.memory.keep.iter().map(|slot| Lane { objects: slot.objects.clone(), bytes: slot.bytes }).collect();
+    let mut frame: Vec<Lane> = plan
+        .memory
+        .slots(plan.memory.policy)
+        .iter()
+        .map(|slot| Lane { objects: slot.objects.clone(), bytes: slot.bytes })
+        .collect();
     frame.sort_by_key(|lane| lane.objects.first().map(|id| (plan.objects[*id].lifetime, *id)));
     outside.chain(frame).collect()
 }

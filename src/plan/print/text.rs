@@ -8,7 +8,7 @@ use super::rows::{self, Row, rows, shared};
 use crate::graph::value::Value;
 use crate::plan::memory::total;
 use crate::plan::merge::{Shared, SharedKind};
-use crate::plan::model::{Causes, ObjectId, Origin, Plan};
+use crate::plan::model::{Causes, ObjectId, Origin, Plan, Policy};
 use crate::plan::needs::feature_names;
 
 /// Names longer than this push what follows out of its column.
@@ -286,22 +286,33 @@ fn memory(plan: &Plan, out: &mut String) {
     let memory = &plan.memory;
     _ = writeln!(out, "memory of the frame:");
     _ = writeln!(out, "  {:>10}  without sharing", describe::bytes(memory.unshared));
-    for (policy, what, slots) in [
-        ("keep", "what skipping needs is kept", &memory.keep),
-        ("smallest", "every unit runs each frame", &memory.smallest),
-    ] {
-        _ = writeln!(out, "  {:>10}  under the policy \"{policy}\": {what}", describe::bytes(total(slots)));
+    for (policy, what) in
+        [(Policy::Keep, "what skipping needs is kept"), (Policy::Smallest, "every unit runs each frame")]
+    {
+        let (slots, name) = (memory.slots(policy), policy.name());
+        _ = writeln!(out, "  {:>10}  under the policy \"{name}\": {what}", describe::bytes(total(slots)));
         for (n, slot) in slots.iter().filter(|s| s.objects.len() > 1).enumerate() {
             let names: Vec<&str> = slot.objects.iter().map(|id| plan.objects[*id].path.as_str()).collect();
-            let label = if policy == "keep" { format!("m{n}: ") } else { String::new() };
+            let label = if policy == memory.policy { format!("m{n}: ") } else { String::new() };
             _ = writeln!(out, "  {:>10}    {label}{}", describe::bytes(slot.bytes), names.join(", "));
         }
     }
+    let alike = describe::bytes(memory.alike_bound);
     _ = writeln!(
         out,
-        "  {:>10}  in the largest live set: no plan can hold less\n",
-        describe::bytes(memory.lower_bound)
+        "  {alike:>10}  in the largest live sets of what is described alike: wgpu lets no plan hold less"
     );
+    let at = plan
+        .passes
+        .get(memory.largest_at)
+        .map_or(String::new(), |p| format!(", at {} ({})", memory.largest_at, p.path));
+    let least = describe::bytes(memory.lower_bound);
+    _ = writeln!(out, "  {least:>10}  in the largest live set{at}: no plan can hold less");
+    let budget = memory.budget.map_or(String::new(), |budget| format!(", of a budget of {}", describe::bytes(budget)));
+    let (name, why) = (memory.policy.name(), &memory.why);
+    let [held, outside] = [memory.held(memory.policy), memory.outside].map(describe::bytes);
+    _ = writeln!(out, "  the policy is \"{name}\": {why}");
+    _ = writeln!(out, "  held: {held}{budget}, with {outside} of inputs and state\n");
 }
 
 fn needs(plan: &Plan, out: &mut String) {
