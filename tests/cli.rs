@@ -53,6 +53,9 @@ fn wrong_usage_ends_with_2() {
         ("--frames", "9..1", "comes after the last"),
         ("--set", "size", "`=` between"),
         ("--backend", "glide", "possible values"),
+        ("--policy", "least", "possible values"),
+        ("--memory-budget", "0", "such as 1048576, 64MiB"),
+        ("--memory-budget", "64 MB", "such as 1048576, 64MiB"),
         ("--dump", "picture=a.txt", "textures are written as .png or .exr"),
     ] {
         refused(&project, &["render", scene, "-o", "a.png", flag, value], 2, &[words]);
@@ -470,6 +473,42 @@ fn bench_measures_passes_and_memory() {
     let csv = good(project.run(&[&args[..], &["csv"]].concat())).stdout;
     assert!(csv.starts_with("what,median_ms,p99_ms\ndiscs,"), "{csv}");
     assert!(good(project.run(&[&args[..], &["table"]].concat())).stdout.contains("all passes"));
+}
+
+#[test]
+fn pictures_do_not_depend_on_the_policy_and_budgets_are_kept() {
+    if !has_adapter() {
+        return;
+    }
+    let project = Project::new();
+    let base = ["render", "scenes/dots.ron", "--size", "64x48", "-o"];
+    let render = |name: &str, more: &[&str]| {
+        good(project.run(&[&base[..], &[name], more].concat()));
+        std::fs::read(project.path(name)).unwrap()
+    };
+    let keep = render("keep.png", &["--policy", "keep"]);
+    assert!(keep == render("smallest.png", &["--policy", "smallest"]), "the policies draw other pictures");
+    assert!(keep == render("within.png", &["--memory-budget", "1MiB"]));
+    let small = [&base[..], &["a.png", "--memory-budget", "16 KiB"]].concat();
+    refused(&project, &small, 1, &["error[memory-budget]", "of what shows the picture", "graphs/dots.ron:"]);
+    let held = |budget: &str| {
+        let args = ["bench", "scenes/dots.ron", "--size", "64x48", "--frames", "1", "--format", "json"];
+        let run = good(project.run(&[&args[..], &["--memory-budget", budget]].concat()));
+        let json: serde_json::Value = serde_json::from_str(&run.stdout).unwrap();
+        json["memory"]["held_bytes"].as_u64().unwrap()
+    };
+    // What the planner counts is what is held, to the byte.
+    let bytes = held("1GiB");
+    assert_eq!(held(&bytes.to_string()), bytes);
+    let less = (bytes - 1).to_string();
+    refused(
+        &project,
+        &["bench", "scenes/dots.ron", "--size", "64x48", "--memory-budget", &less],
+        1,
+        &["memory-budget"],
+    );
+    let plan = good(project.run(&["plan", "scenes/dots.ron", "--policy", "smallest"])).stdout;
+    assert!(plan.contains("the policy is \"smallest\": it was asked for"), "{plan}");
 }
 
 /// A project with one graph and its shaders.

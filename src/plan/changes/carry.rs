@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use super::reason::Reason;
 use super::{Cause, Changes, Marks, objects};
-use crate::plan::model::{ObjectId, Plan};
+use crate::plan::model::{ObjectId, Plan, Policy};
 
 impl Changes {
     /// Takes over from a plan before what needs not run again: units of the same passes, by their
@@ -33,11 +33,13 @@ impl Changes {
             if then.iter().zip(&unit.passes).any(|(a, b)| old.prints[*a] != self.prints[*b]) {
                 self.pending.marks[u].add(&Reason::Pass);
             }
+            // Under the smallest policy what is looked at may share too, and all run if one does.
+            let counts = |id: ObjectId| !shares(id) || plan.memory.policy == Policy::Smallest;
             let lost = unit
                 .passes
                 .iter()
                 .flat_map(|p| &plan.passes[*p].accesses)
-                .any(|access| objects(plan, &access.object).into_iter().any(|id| !shares(id) && !kept(id)));
+                .any(|access| objects(plan, &access.object).into_iter().any(|id| counts(id) && !kept(id)));
             if lost {
                 self.pending.marks[u].add(&Reason::Memory);
             }
