@@ -195,6 +195,10 @@ pub struct PlanArgs {
     /// A graph, or a scene with its inputs
     #[arg(value_name = "GRAPH")]
     pub graph: PathBuf,
+    /// Why a pass runs, and with what it shares a pass of the device, or where a resource's memory lies and why
+    /// there; of all of them without a name
+    #[arg(long, value_name = "PASS|RESOURCE", num_args = 0..=1, default_missing_value = "")]
+    pub explain: Option<String>,
     #[arg(long, value_enum, default_value_t = PlanFormat::Text)]
     pub format: PlanFormat,
     /// Size of the picture in pixels

@@ -18,11 +18,9 @@ pub fn run(args: &PlanArgs) -> Exit {
     match make(args, &mut sources) {
         Ok((plan, found)) => {
             let exit = report(&found, &sources);
-            let text = match args.format {
-                PlanFormat::Text => printed::text(&plan),
-                PlanFormat::Json => printed::json(&plan),
-                PlanFormat::Dot => printed::dot(&plan),
-                PlanFormat::Svg => printed::svg(&plan),
+            let text = match text(args, &plan, &sources) {
+                Ok(text) => text,
+                Err(refused) => return report(&(*refused).into(), &sources),
             };
             match print(&text) {
                 Exit::Done => exit,
@@ -30,6 +28,26 @@ pub fn run(args: &PlanArgs) -> Exit {
             }
         }
         Err(found) => report(&found, &sources),
+    }
+}
+
+fn text(args: &PlanArgs, plan: &Plan, sources: &Sources) -> Result<String, Box<Diagnostic>> {
+    let Some(name) = &args.explain else {
+        return Ok(match args.format {
+            PlanFormat::Text => printed::text(plan),
+            PlanFormat::Json => printed::json(plan),
+            PlanFormat::Dot => printed::dot(plan),
+            PlanFormat::Svg => printed::svg(plan),
+        });
+    };
+    let all = plan::explain::explain(plan, sources, Some(name.as_str()).filter(|name| !name.is_empty()))?;
+    match args.format {
+        PlanFormat::Text => Ok(printed::explained(&all)),
+        PlanFormat::Json => Ok(printed::explained_json(&all)),
+        PlanFormat::Dot | PlanFormat::Svg => {
+            let message = "explanations are text or JSON";
+            Err(Box::new(Diagnostic::error(Code::USAGE, message).hint("leave `--format` out, or say `--format json`")))
+        }
     }
 }
 

@@ -1,11 +1,11 @@
 //! Lifetimes, and which objects may share memory (rule 38).
 
 use std::cmp::Reverse;
-use std::collections::{BTreeSet, BinaryHeap, HashMap};
+use std::collections::{BTreeMap, BTreeSet, BinaryHeap, HashMap};
 
 use wgpu_types::TextureUsages;
 
-use super::model::{Memory, Object, ObjectId, ObjectKind, Origin, Slot, Steps, Texture, Unit};
+use super::model::{Apart, Memory, Object, ObjectId, ObjectKind, Origin, Slot, Steps, Texture, Unit};
 use crate::format;
 
 /// The bytes of an object as this program counts them: what its texels or items take.
@@ -54,7 +54,9 @@ pub(super) fn share(
     let of_frame: Vec<ObjectId> = (0..objects.len())
         .filter(|id| objects[*id].origin == Origin::Frame && objects[*id].lifetime.is_some())
         .collect();
-    let kept = same_causes(objects.len(), runs, touched, units);
+    let mut apart = apart(runs, touched, units);
+    apart.retain(|id, _| objects[*id].origin == Origin::Frame);
+    apart.extend(own.iter().map(|id| (*id, Apart::LookedAt)));
     // What is looked at after the frame lives to its end, and is there until the next.
     let lives: Vec<Life> = (of_frame.iter())
         .filter_map(|id| {
@@ -63,7 +65,7 @@ pub(super) fn share(
             Some(Life { id: *id, first, last, bytes: bytes(&objects[*id].kind) })
         })
         .collect();
-    let keep = slots(objects, &lives, &|id| kept[id] && !own.contains(&id));
+    let keep = slots(objects, &lives, &|id| !apart.contains_key(&id));
     let mut smallest = slots(objects, &lives, &|_| true);
     // More freedom may lead a greedy choice astray; what may be kept is good enough for both then.
     if total(&smallest) > total(&keep) {
@@ -73,6 +75,7 @@ pub(super) fn share(
     Memory {
         keep,
         smallest,
+        apart,
         unshared: lives.iter().map(|life| life.bytes).sum(),
         lower_bound,
         largest_at,
@@ -99,19 +102,22 @@ pub fn total(slots: &[Slot]) -> u64 {
 /// When a pass runs: its unit, and its `Steps`.
 pub(super) type Runs = (usize, Option<usize>);
 
-/// For each object whether all units that touch it run for the same causes. What steps wrote and
-/// others read cannot be made again where a frame is only drawn anew, which runs no step.
-fn same_causes(objects: usize, runs: &[Runs], touched: &[Vec<ObjectId>], units: &[Unit]) -> Vec<bool> {
-    let mut first: Vec<Option<Runs>> = vec![None; objects];
-    let mut same = vec![true; objects];
+/// Objects that not all units which touch them run for the same causes. What steps wrote and others
+/// read cannot be made again where a frame is only drawn anew, which runs no step.
+fn apart(runs: &[Runs], touched: &[Vec<ObjectId>], units: &[Unit]) -> BTreeMap<ObjectId, Apart> {
+    let mut first: HashMap<ObjectId, Runs> = HashMap::new();
+    let mut apart = BTreeMap::new();
     for ((now, steps), ids) in runs.iter().zip(touched) {
         for id in ids {
-            let (unit, first_steps) = *first[*id].get_or_insert((*now, *steps));
-            let alike = unit == *now || units[unit].causes == units[*now].causes;
-            same[*id] = same[*id] && alike && first_steps == *steps;
+            let (unit, first_steps) = *first.entry(*id).or_insert((*now, *steps));
+            if first_steps != *steps {
+                apart.entry(*id).or_insert(Apart::Steps);
+            } else if unit != *now && units[unit].causes != units[*now].causes {
+                apart.entry(*id).or_insert(Apart::Causes { units: [unit, *now] });
+            }
         }
     }
-    same
+    apart
 }
 
 /// Gives every object a slot, in order of first use: a free one of its class (the smallest that
@@ -150,7 +156,7 @@ fn slots(objects: &[Object], lives: &[Life], may: &dyn Fn(ObjectId) -> bool) -> 
 }
 
 /// Textures share if they are described alike, buffers always: a slot is as large as its largest.
-fn class(kind: &ObjectKind) -> Option<Texture> {
+pub(super) fn class(kind: &ObjectKind) -> Option<Texture> {
     match kind {
         ObjectKind::Texture(texture) => Some(Texture { usages: TextureUsages::empty(), ..texture.clone() }),
         ObjectKind::Buffer(_) => None,

@@ -114,26 +114,65 @@ impl<'a> Group<'a> {
     fn join(&mut self, plan: &Plan, memory: Memory<'_>, pass: &'a Pass) -> bool {
         let PassKind::Draw(draw) = &pass.kind else { return false };
         let touches = touches(plan, memory, draw);
-        let writes_depth = self.writes_depth || writes_depth(draw);
-        let samples_depth = draw.depth.as_ref().is_some_and(|d| {
-            let depth = handles(plan, memory, d.view.object);
-            meet(&depth, &touches.read) || meet(&depth, &self.touches.read)
-        });
-        let conflicts = (writes_depth && samples_depth)
-            || meet(&self.touches.written, &touches.read)
-            || meet(&self.touches.written, &touches.written)
-            || meet(&self.touches.read, &touches.written)
-            // What is resolved is there only after the render pass.
-            || meet(&resolved(plan, memory, self.last), &touches.read)
-            || meet(&resolved(plan, memory, draw), &self.touches.read);
-        let fits = self.steps == pass.steps && same_targets(self.last, draw) && !conflicts;
+        let fits = self.parting(plan, memory, pass, &touches).is_none();
         if fits {
             self.last = draw;
-            self.writes_depth = writes_depth;
+            self.writes_depth |= writes_depth(draw);
             self.touches.read.extend(touches.read);
             self.touches.written.extend(touches.written);
         }
         fits
+    }
+
+    /// Why a pass cannot be drawn with these.
+    fn parting(&self, plan: &Plan, memory: Memory<'_>, pass: &Pass, touches: &Touches) -> Option<&'static str> {
+        let PassKind::Draw(draw) = &pass.kind else { return Some("it is no draw") };
+        let samples_depth = || {
+            draw.depth.as_ref().is_some_and(|d| {
+                let depth = handles(plan, memory, d.view.object);
+                meet(&depth, &touches.read) || meet(&depth, &self.touches.read)
+            })
+        };
+        let parted = |is_so: bool, why: &'static str| is_so.then_some(why);
+        parted(self.steps != pass.steps, "it is in other steps")
+            .or_else(|| parted(!same_targets(self.last, draw), "it has other targets, or does not load them"))
+            .or_else(|| {
+                let writes_depth = self.writes_depth || writes_depth(draw);
+                parted(writes_depth && samples_depth(), "depth is written and sampled")
+            })
+            .or_else(|| {
+                let conflicts = meet(&self.touches.written, &touches.read)
+                    || meet(&self.touches.written, &touches.written)
+                    || meet(&self.touches.read, &touches.written);
+                parted(conflicts, "one of them writes what the other uses")
+            })
+            .or_else(|| {
+                // What is resolved is there only after the render pass.
+                let resolves = meet(&resolved(plan, memory, self.last), &touches.read)
+                    || meet(&resolved(plan, memory, draw), &self.touches.read);
+                parted(resolves, "one of them reads what is resolved after the other")
+            })
+    }
+}
+
+/// Why a pass shares no pass of the device with the one before it; absent if it does, or if it is the first.
+pub fn parting(plan: &Plan, memory: &dyn Fn(ObjectId) -> usize, at: usize) -> Option<&'static str> {
+    let before = at.checked_sub(1)?;
+    let (last, pass) = (&plan.passes[before], &plan.passes[at]);
+    let (was, is) = (kind(plan, &last.kind), kind(plan, &pass.kind));
+    match (was, is) {
+        (SharedKind::Compute, SharedKind::Compute) => (last.steps != pass.steps).then_some("it is in other steps"),
+        (SharedKind::Render, SharedKind::Render) => {
+            let leader = leaders(plan, memory)[before];
+            let mut group = Group::new(plan, memory, leader, &plan.passes[leader])?;
+            plan.passes[leader + 1..at].iter().for_each(|pass| _ = group.join(plan, memory, pass));
+            let PassKind::Draw(draw) = &pass.kind else { return None };
+            group.parting(plan, memory, pass, &touches(plan, memory, draw))
+        }
+        (_, SharedKind::Alone) | (SharedKind::Alone, _) => Some("copies and clears are no passes of the device"),
+        (SharedKind::Compute, SharedKind::Render) | (SharedKind::Render, SharedKind::Compute) => {
+            Some("one of them draws, the other dispatches")
+        }
     }
 }
 

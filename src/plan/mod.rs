@@ -7,6 +7,7 @@
 mod budget;
 pub mod changes;
 mod cull;
+pub mod explain;
 pub mod fields;
 mod flow;
 mod insert;

@@ -261,6 +261,8 @@ pub enum UniformValue {
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct Unit {
     pub passes: Vec<usize>,
+    /// Those that its own passes have.
+    pub own: Causes,
     /// Those of its own and of all units that it reads from.
     pub causes: Causes,
     /// The units that read what it writes, in program order, without itself.
@@ -283,6 +285,16 @@ impl Causes {
     /// How many there are.
     pub fn len(&self) -> usize {
         self.inputs.len() + self.live.len() + self.params.len() + usize::from(self.viewport)
+    }
+
+    /// Those that others do not have.
+    pub fn without(&self, others: &Causes) -> Causes {
+        Causes {
+            inputs: &self.inputs - &others.inputs,
+            live: &self.live - &others.live,
+            params: &self.params - &others.params,
+            viewport: self.viewport && !others.viewport,
+        }
     }
 
     /// Whether there is none: what has none runs once.

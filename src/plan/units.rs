@@ -72,6 +72,7 @@ pub(super) fn units(lowering: &mut Lowering<'_>) -> (Vec<Unit>, BTreeMap<usize, 
         .collect();
     let only_steps: Vec<bool> =
         units.iter().map(|unit| unit.passes.iter().all(|p| lowering.flat[*p].pass.steps.is_some())).collect();
+    let own = bits.clone();
     let mut through = bits.clone();
     close(&mut bits, &readers, &only_steps, &names.step());
     let mut made_from = BTreeMap::new();
@@ -80,7 +81,8 @@ pub(super) fn units(lowering: &mut Lowering<'_>) -> (Vec<Unit>, BTreeMap<usize, 
         let of_steps = steps.values().map(|p| lowering.flat[*p].pass.unit);
         made_from.extend(of_steps.map(|unit| (unit, names.causes(&through[unit]))));
     }
-    for ((unit, bits), readers) in units.iter_mut().zip(&bits).zip(readers) {
+    for (((unit, bits), own), readers) in units.iter_mut().zip(&bits).zip(&own).zip(readers) {
+        unit.own = names.causes(own);
         unit.causes = names.causes(bits);
         unit.readers = readers;
     }

@@ -1,6 +1,7 @@
 //! Plans as text, JSON, DOT and SVG.
 
 use meniscus::graph::value::Value;
+use meniscus::plan::explain::{Explanation, explain};
 use meniscus::plan::model::Plan;
 use meniscus::plan::print;
 use serde_json::Value as Json;
@@ -10,6 +11,10 @@ use crate::planning::{Test, paths};
 
 /// A bit of everything: a part, a loop, steps, a counted buffer, shared memory, something culled.
 fn sample() -> Plan {
+    test().plan()
+}
+
+fn test() -> Test {
     let graph = r#"Graph(
         params: { "turns": Int(default: 4, min: 0, max: 9, unit: "times", about: "how often") },
         state: { "old": Buffer(items: 16), "next": Buffer(items: 16) },
@@ -45,7 +50,37 @@ fn sample() -> Plan {
         passes: [ Fullscreen(name: "mend", shader: "filter.wgsl", color: ["half"], bind: {"src": "picture"}) ],
         outputs: { "result": "half" },
     )"#;
-    Test::new(&graph).with("graphs/end.ron", end).param("turns", Value::Int(5)).root("seen").root("idle_copy").plan()
+    Test::new(&graph).with("graphs/end.ron", end).param("turns", Value::Int(5)).root("seen").root("idle_copy")
+}
+
+fn explained(name: Option<&str>) -> Vec<Explanation> {
+    let (plan, sources) = test().with_sources();
+    explain(&plan.unwrap(), &sources, name).unwrap_or_else(|found| panic!("{found:?}"))
+}
+
+#[test]
+fn explained_as_text() {
+    golden("tests/plan/explained.txt", &print::explained(&explained(None)));
+}
+
+#[test]
+fn explained_as_json() {
+    let json: Json = serde_json::from_str(&print::explained_json(&explained(Some("b")))).unwrap();
+    assert_eq!((&json[0]["kind"], &json[0]["path"]), (&"resource".into(), &"b".into()));
+    assert!(json[0]["written_by"][0].as_str().unwrap().starts_with("join"), "{json}");
+    assert!(json[0]["memory"][1].as_str().unwrap().contains("shared with end.half"), "{json}");
+}
+
+#[test]
+fn a_loop_is_explained_by_its_name_and_what_is_unknown_has_neighbours() {
+    let paths = |name| explained(Some(name)).iter().map(|e| e.path.clone()).collect::<Vec<_>>();
+    assert_eq!(paths("smooth"), ["smooth[0]"]);
+    assert_eq!(paths("smooth[3]"), ["smooth[3]"]);
+    assert_eq!(paths("idle"), ["idle", "idle"], "a culled pass and what it writes");
+    let (plan, sources) = test().with_sources();
+    let unknown = explain(&plan.unwrap(), &sources, Some("smoth")).unwrap_err();
+    assert_eq!(unknown.message, "no pass and no resource is called `smoth`");
+    assert!(unknown.hints.iter().any(|hint| hint.contains("did you mean `smooth")), "{unknown:?}");
 }
 
 #[test]

@@ -132,10 +132,20 @@ impl Test {
     }
 
     pub fn try_plan(&self) -> Result<Plan, (Diagnostics, Sources)> {
+        self.with_sources().0.map_err(|(found, sources)| (found, *sources))
+    }
+
+    /// What came of planning, and the texts that spans point into.
+    pub fn with_sources(&self) -> (Result<Plan, (Diagnostics, Box<Sources>)>, Sources) {
         let mut sources = Sources::new();
-        let loaded = program::load(&self.files, &mut sources, "graphs/test.ron", None);
-        let Some(program) = loaded.program else { return Err((loaded.diagnostics, sources)) };
-        instantiate(&program, &self.request).map_err(|found| (found, sources))
+        let planned = self.plan_into(&mut sources).map_err(|found| (found, Box::new(sources.clone())));
+        (planned, sources)
+    }
+
+    fn plan_into(&self, sources: &mut Sources) -> Result<Plan, Diagnostics> {
+        let loaded = program::load(&self.files, sources, "graphs/test.ron", None);
+        let Some(program) = loaded.program else { return Err(loaded.diagnostics) };
+        instantiate(&program, &self.request)
     }
 
     pub fn plan(&self) -> Plan {

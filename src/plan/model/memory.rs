@@ -1,6 +1,6 @@
 //! What memory a plan's objects have, and what is asked of it.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 
 use super::ObjectId;
@@ -48,6 +48,8 @@ pub struct Memory {
     pub keep: Vec<Slot>,
     /// The same when every unit runs each frame.
     pub smallest: Vec<Slot>,
+    /// Objects that share with nobody while things are kept.
+    pub apart: BTreeMap<ObjectId, Apart>,
     /// Bytes of all objects of the frame, each on its own.
     pub unshared: u64,
     /// Bytes of the largest set that is live at once: no plan can hold less.
@@ -66,6 +68,17 @@ pub struct Memory {
 pub struct Slot {
     pub objects: Vec<ObjectId>,
     pub bytes: u64,
+}
+
+/// Why an object of the frame shares with nobody while things are kept.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Apart {
+    /// It is an output, or somebody asked for it: it is looked at after the frame.
+    LookedAt,
+    /// Two units touch it that run for different causes.
+    Causes { units: [usize; 2] },
+    /// Steps touch it, and passes outside of those.
+    Steps,
 }
 
 /// Why a policy was chosen.

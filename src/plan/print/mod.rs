@@ -2,6 +2,7 @@
 
 mod describe;
 mod dot;
+mod explained;
 mod json;
 mod rows;
 mod svg;
@@ -9,7 +10,9 @@ mod text;
 
 pub use describe::{bytes, object, pass};
 pub use dot::dot;
+pub use explained::{explained, explained_json};
 pub use json::json;
-pub(crate) use rows::id as object_id;
+pub(crate) use rows::{id as object_id, rows, shared_handles};
 pub use svg::svg;
+pub(crate) use text::causes;
 pub use text::text;

@@ -169,11 +169,17 @@ pub fn what(plan: &Plan, row: &Row) -> String {
 
 /// The passes of the device, under the plan's policy.
 pub fn shared_passes(plan: &Plan) -> Vec<Shared> {
+    let handles = shared_handles(plan);
+    merge::shared(plan, &|id| handles[id])
+}
+
+/// For each object the first of those that it shares memory with under the plan's policy.
+pub fn shared_handles(plan: &Plan) -> Vec<ObjectId> {
     let mut first: Vec<ObjectId> = (0..plan.objects.len()).collect();
     for slot in plan.memory.slots(plan.memory.policy) {
         slot.objects.iter().for_each(|id| first[*id] = slot.objects[0]);
     }
-    merge::shared(plan, &|id| first[id])
+    first
 }
 
 /// For each object the label of the memory that it shares under the plan's policy.

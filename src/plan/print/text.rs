@@ -128,13 +128,13 @@ fn units(plan: &Plan, out: &mut String) {
 fn bases(plan: &Plan, known: &[usize], all: &Causes) -> (Vec<usize>, Causes) {
     let (mut chosen, mut rest) = (Vec::new(), all.clone());
     while chosen.len() < 2 {
-        let gain = |k: usize| rest.len() - without(&rest, &plan.units[k].causes).len();
+        let gain = |k: usize| rest.len() - rest.without(&plan.units[k].causes).len();
         let inside = known.iter().copied().filter(|k| within(&plan.units[*k].causes, all));
         // The first of equals.
         let best = inside.map(|k| (gain(k), k)).max_by_key(|(gain, k)| (*gain, std::cmp::Reverse(*k)));
         let Some((gain, k)) = best.filter(|(gain, _)| *gain > 2 || (*gain > 0 && *gain == rest.len())) else { break };
         debug_assert!(gain > 0, "a base takes something away");
-        rest = without(&rest, &plan.units[k].causes);
+        rest = rest.without(&plan.units[k].causes);
         chosen.push(k);
     }
     (chosen, rest)
@@ -145,15 +145,6 @@ fn within(a: &Causes, b: &Causes) -> bool {
         && a.live.is_subset(&b.live)
         && a.params.is_subset(&b.params)
         && (b.viewport || !a.viewport)
-}
-
-fn without(all: &Causes, less: &Causes) -> Causes {
-    Causes {
-        inputs: &all.inputs - &less.inputs,
-        live: &all.live - &less.live,
-        params: &all.params - &less.params,
-        viewport: all.viewport && !less.viewport,
-    }
 }
 
 /// `3, 5 to 9`.
@@ -174,7 +165,7 @@ fn ranges(numbers: &[usize]) -> String {
 }
 
 /// Causes in one line.
-pub(super) fn causes(causes: &Causes) -> String {
+pub fn causes(causes: &Causes) -> String {
     let mut parts = Vec::new();
     let join = |set: &BTreeSet<String>| set.iter().cloned().collect::<Vec<_>>().join(", ");
     if !causes.inputs.is_empty() {
