@@ -4,6 +4,7 @@
 mod ball;
 mod device;
 mod field;
+mod foam;
 mod grid;
 #[path = "../engine/harness.rs"]
 mod harness;
@@ -43,6 +44,10 @@ fn main() -> ExitCode {
         light::waves_keep_the_light,
         light::a_wave_focuses_as_a_lens_does,
         light::light_from_below_lights_nothing,
+        foam::droplets_are_capsules_along_their_motion,
+        foam::motion_smears_a_droplet_and_takes_nothing_from_it,
+        foam::the_order_of_droplets_does_not_count,
+        foam::below_the_surface_they_are_where_it_bends_their_light_from,
         points::densities_are_the_sums,
         points::surfels_lie_on_the_surface,
         points::layouts_agree,
