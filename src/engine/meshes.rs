@@ -122,6 +122,18 @@ impl Bench<'_> {
 }
 
 impl Runner {
+    /// Draws the blended primitives of an input from back to front; `away` tells how far from the eye an instance is.
+    pub fn sort_blended(&mut self, input: &str, away: &dyn Fn(u32) -> f32) {
+        for pass in &mut self.plan.passes {
+            let PassKind::Draw(draw) = &mut pass.kind else { continue };
+            let Geometry::Meshes(meshes) = &mut draw.geometry else { continue };
+            if meshes.input == input {
+                let first = meshes.draws.partition_point(|call| !call.blended);
+                meshes.draws[first..].sort_by(|a, b| away(b.first_instance).total_cmp(&away(a.first_instance)));
+            }
+        }
+    }
+
     /// Forgets bind groups with textures of an input's materials.
     pub(super) fn forget_materials(&mut self, input: &str) {
         for (pass, variants) in self.plan.passes.iter().zip(&mut self.variants) {

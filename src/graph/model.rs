@@ -54,6 +54,8 @@ pub enum InputDefault {
     },
     /// One texel, linear.
     Texture([f64; 4]),
+    /// No particles.
+    NoParticles,
 }
 
 #[derive(Clone, Debug)]

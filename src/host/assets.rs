@@ -11,7 +11,7 @@ use super::models::Models;
 use crate::diagnostic::{Code, Diagnostic, Diagnostics, Span};
 use crate::scene::cube;
 use crate::scene::image::Image;
-use crate::scene::particles::{self, ParticleSet};
+use crate::scene::particles::{self, Attribute, ParticleSet, Values};
 
 /// Particles with a radius.
 #[derive(Debug)]
@@ -29,7 +29,29 @@ impl Particles {
         let [min, max] = bounds.unwrap_or([set.min, set.max]);
         Self { set, radius_m, min, max }
     }
+
+    /// No particles, whose attributes fit all that shaders take them for.
+    pub(super) fn none(attributes: &[&str]) -> Self {
+        let columns = attributes.iter().map(|name| Attribute {
+            name: (*name).to_owned(),
+            components: 0,
+            values: Values::F32(Vec::new()),
+        });
+        let set = ParticleSet {
+            attributes: columns.collect(),
+            count: 0,
+            dropped: 0,
+            radius: None,
+            min: [0.0; 3],
+            max: [0.0; 3],
+            notes: Vec::new(),
+        };
+        Self::new(Arc::new(set), RADIUS_OF_NONE_M, None)
+    }
 }
+
+/// Nothing has this radius; sizes that are made of it must not be zero.
+const RADIUS_OF_NONE_M: f64 = 0.025;
 
 /// A file's content, decoded.
 #[derive(Clone, Debug)]
@@ -230,8 +252,7 @@ pub fn radius_m(
         return Ok(radius);
     }
     if set.count == 0 {
-        // Nothing has this radius; sizes that are made of it must not be zero.
-        return Ok(0.025);
+        return Ok(RADIUS_OF_NONE_M);
     }
     match estimated {
         Some(radius) => {

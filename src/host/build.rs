@@ -366,6 +366,7 @@ fn upload(
 fn fill(engine: &Engine, runner: &mut Runner, id: usize, input: &Input) -> Result<(), Diagnostic> {
     let object = &runner.plan().objects[id];
     match (&object.origin, &object.kind, input) {
+        (Origin::Attribute { .. }, _, Input::Particles(particles)) if particles.set.count == 0 => Ok(()),
         (Origin::Attribute { attribute, present, .. }, ObjectKind::Buffer(buffer), Input::Particles(particles)) => {
             let column = particles.set.attribute(attribute).filter(|_| *present);
             let bytes = match column {
@@ -447,29 +448,6 @@ fn material_sampler(about: Sampler) -> MaterialSampler {
     });
     let (wrap_u, wrap_v) = (wrap(about.wrap_u), wrap(about.wrap_v));
     MaterialSampler { wrap_u, wrap_v, mag: filter(about.mag), min: filter(about.min), mip }
-}
-
-/// Puts what time moves where it is at a time in seconds.
-pub(super) fn move_meshes(
-    engine: &Engine,
-    runner: &mut Runner,
-    inputs: &BTreeMap<String, Input>,
-    time_s: f64,
-    moved_s: &mut Option<f64>,
-) -> Result<(), Diagnostic> {
-    // While time stands, nothing is new.
-    if moved_s.replace(time_s) == Some(time_s) {
-        return Ok(());
-    }
-    for id in 0..runner.plan().objects.len() {
-        let Origin::Mesh { input, buffer: MeshBuffer::Instances } = &runner.plan().objects[id].origin else { continue };
-        if let Some(Input::Meshes(meshes)) = inputs.get(input)
-            && meshes.info.animated
-        {
-            runner.upload_buffer(engine, id, &meshes.instances(time_s))?;
-        }
-    }
-    Ok(())
 }
 
 /// Rows of named values as items of a struct.

@@ -2,8 +2,9 @@
 
 use std::time::Instant;
 
-use super::build::{Session, is_color, move_meshes};
+use super::build::{Session, is_color};
 use super::live_values::LiveValues;
+use super::moving::Moving;
 use super::picture::{self, PictureKind, Texels};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::engine::{Frame, Report, Runner, TextureData};
@@ -87,7 +88,6 @@ impl Session {
         for frame in first..=moment.frame {
             let now = if frame == moment.frame { moment } else { Moment::at_frame(frame) };
             let steps = steps_until(runner.plan(), runner.steps_done(), now, first)?;
-            move_meshes(&self.engine, runner, &content.inputs, now.time_s, &mut self.moved_s)?;
             let live = LiveValues::new(content, &content.inputs, &self.pointed, now.time_s);
             let frame = Frame {
                 time: now.time_s,
@@ -97,7 +97,8 @@ impl Session {
                 live: &|name, step| live.at(name, step),
                 only: None,
             };
-            runner.run(&self.engine, &frame)?;
+            let (inputs, camera, moved_s) = (&content.inputs, &content.camera, &mut self.moved_s);
+            Moving { inputs, camera, moved_s }.run(&self.engine, runner, &frame)?;
         }
         Ok(())
     }

@@ -183,8 +183,9 @@ pub(super) fn connect(
         match offered(declared, scene, decoded) {
             Some(input) => _ = inputs.insert(name.clone(), input),
             None if decoded.failed.contains(name) => {}
-            None if declared.default.is_some() && !scene.items().iter().any(|(_, item)| item.value == *name) => {
-                inputs.extend(declared.default.as_ref().map(|default| (name.clone(), Input::of_default(default))));
+            None if has_default(declared, scene) => {
+                let default = declared.default.as_ref().map(|default| Input::of_default(default, &declared.kind));
+                inputs.extend(default.map(|input| (name.clone(), input)));
             }
             None => {
                 if let Some(problem) = missing(declared, graph, scene) {
@@ -194,6 +195,17 @@ pub(super) fn connect(
         }
     }
     inputs
+}
+
+/// Whether the graph says what feeds an input that the scene has no item for. That there are no particles holds only
+/// for scenes of meshes: in others somebody forgot them.
+fn has_default(declared: &Declared, scene: &Scene) -> bool {
+    let is_other = scene.items().iter().any(|(_, item)| item.value == declared.name.value);
+    match &declared.default {
+        None => false,
+        Some(InputDefault::NoParticles) => !is_other && !scene.meshes.is_empty(),
+        Some(_) => !is_other,
+    }
 }
 
 fn offered(declared: &Declared, scene: &Scene, decoded: &Decoded) -> Option<Input> {
@@ -269,7 +281,7 @@ pub(super) fn unused(scene: &Scene, takers: &[&Graph], diagnostics: &mut Diagnos
 
 impl Input {
     /// What a graph says of an input that nothing else feeds.
-    fn of_default(default: &InputDefault) -> Self {
+    fn of_default(default: &InputDefault, kind: &InputKind) -> Self {
         match default {
             InputDefault::Light { direction, color, intensity } => Input::Light(Light {
                 direction: DVec3::from_array(*direction),
@@ -279,6 +291,13 @@ impl Input {
             InputDefault::Texture(color) => {
                 let texel = color.map(|channel| f16::from_f64(channel.clamp(-65504.0, 65504.0)));
                 Input::Image(Arc::new(Image { width: 1, height: 1, texels: vec![texel], clipped: 0 }))
+            }
+            InputDefault::NoParticles => {
+                let names = match kind {
+                    InputKind::Particles { attributes } => attributes.iter().map(|a| a.name.value.as_str()).collect(),
+                    _ => Vec::new(),
+                };
+                Input::Particles(Arc::new(Particles::none(&names)))
             }
         }
     }

@@ -1,10 +1,11 @@
 //! Drawing for a window: a frame is submitted and nobody waits for it; times and counts come
 //! later. Steps are done as time passes, and a frame that is drawn again runs none.
 
-use super::build::{Session, is_color, move_meshes};
+use super::build::{Session, is_color};
 use super::draw::nothing;
 use super::inputs::Input;
 use super::live_values::LiveValues;
+use super::moving::Moving;
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::engine::{Frame, Report, Screen, TextureData};
 use crate::plan::model::{ObjectRef, Plan};
@@ -53,7 +54,6 @@ impl Session {
     pub fn submit(&mut self, live: &Live<'_>) -> Result<Report, Diagnostics> {
         let (Some(content), Some(runner)) = (&mut self.content, &mut self.graph) else { return Err(nothing().into()) };
         content.camera = live.camera;
-        move_meshes(&self.engine, runner, &content.inputs, live.time_s, &mut self.moved_s)?;
         let values = LiveValues::new(content, &content.inputs, &self.pointed, live.time_s);
         let frame = Frame {
             time: live.time_s,
@@ -63,7 +63,8 @@ impl Session {
             live: &|name, step| values.at(name, step),
             only: live.only,
         };
-        runner.run(&self.engine, &frame)
+        let (inputs, camera, moved_s) = (&content.inputs, &content.camera, &mut self.moved_s);
+        Moving { inputs, camera, moved_s }.run(&self.engine, runner, &frame)
     }
 
     /// Presents what the graph made last, and puts it on a screen. Tells whether the screen's

@@ -399,7 +399,7 @@ impl Loader<'_> {
             Some(camera) => camera.value,
             None => {
                 let seen = inputs.values().find_map(|input| match input {
-                    Input::Particles(particles) => Some(particles),
+                    Input::Particles(particles) if particles.set.count > 0 => Some(particles),
                     _ => None,
                 });
                 let (positions, radius) =

@@ -10,7 +10,7 @@ use glam::{DMat4, Mat4, Vec3};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::engine::packing;
 use crate::graph::value::Value;
-use crate::plan::meshes::{INSTANCE_BYTES, MaterialTexture, MeshDraw, MeshesInfo, VertexAttribute};
+use crate::plan::meshes::{Faces, INSTANCE_BYTES, MaterialTexture, MeshDraw, MeshesInfo, VertexAttribute};
 use crate::scene::MeshEntry;
 use crate::scene::Playing;
 use crate::scene::image::Stored;
@@ -30,6 +30,8 @@ pub struct Meshes {
     /// An entry of the scene for each group of instances that moves together.
     entries: Vec<Entry>,
     instances: Vec<Instance>,
+    /// Instances that blend, each with the middle of its box in the space of its node.
+    blended: Vec<(u32, Vec3)>,
 }
 
 #[derive(Debug, Default)]
@@ -152,6 +154,8 @@ impl Meshes {
             for (primitive, range) in mesh.primitives.iter().zip(ranges) {
                 let material = placed.first_material + primitive.material as u32;
                 let (first_index, indices) = (range.start, range.end - range.start);
+                let of = &self.materials[material as usize];
+                let (double_sided, blended) = (of.double_sided, of.alpha_mode == AlphaMode::Blend);
                 // Mirrored and other bodies have calls of their own, since their fronts differ.
                 for mirrored in [false, true] {
                     let first_instance = self.instances.len() as u32;
@@ -162,17 +166,18 @@ impl Meshes {
                             self.instances.push(Instance { entry, node, body, first_triangle, triangles, material });
                         }
                     }
-                    let instances = self.instances.len() as u32 - first_instance;
-                    if instances > 0 && indices > 0 {
-                        let of = &self.materials[material as usize];
+                    let all = first_instance..self.instances.len() as u32;
+                    // What blends is sorted by depth, each by itself.
+                    let at_once = if blended { 1 } else { all.end - all.start };
+                    for first_instance in all.step_by(at_once.max(1) as usize).filter(|_| indices > 0) {
                         self.info.draws.push(MeshDraw {
                             first_index,
                             indices,
                             first_instance,
-                            instances,
+                            instances: at_once,
                             material,
-                            faces: crate::plan::meshes::Faces { double_sided: of.double_sided, mirrored },
-                            blended: of.alpha_mode == AlphaMode::Blend,
+                            faces: Faces { double_sided, mirrored },
+                            blended,
                             tags: about.tags.clone(),
                         });
                     }
@@ -181,13 +186,36 @@ impl Meshes {
         }
     }
 
-    /// What is opaque first; then few changes of pipelines and materials.
+    /// What is opaque first, with few changes of pipelines and materials; what blends as the scene has it.
     fn sort_draws(&mut self) {
-        self.info.draws.sort_by_key(|draw| (draw.blended, draw.faces, draw.material));
+        let alike = |draw: &MeshDraw| (!draw.blended).then_some((draw.faces, draw.material));
+        self.info.draws.sort_by_key(|draw| (draw.blended, alike(draw)));
+    }
+
+    /// Whether it matters from where blended primitives are seen.
+    pub(super) fn blends_several(&self) -> bool {
+        self.blended.len() > 1
+    }
+
+    /// How far from an eye the middle of each blended instance's box is at a time, in metres.
+    pub(super) fn away_m(&self, eye: Vec3, time_s: f64) -> BTreeMap<u32, f32> {
+        let poses: Vec<Vec<Mat4>> = self.entries.iter().map(|entry| entry.pose(time_s)).collect();
+        let away = |(at, middle): &(u32, Vec3)| {
+            let instance = self.instances[*at as usize];
+            let world = self.bodies[instance.body as usize] * poses[instance.entry][instance.node];
+            (*at, world.transform_point3(*middle).distance(eye))
+        };
+        self.blended.iter().map(away).collect()
     }
 
     fn fill_info(&mut self, parts: &[(&MeshEntry, Arc<Model>)]) {
         let (min, max) = self.bounds();
+        let blended = self.info.draws.iter().filter(|draw| draw.blended).map(|draw| draw.first_instance);
+        let middle = |at: u32| {
+            let (low, high) = self.vertices.bounds(&self.instances[at as usize]);
+            (at, (low + high) * 0.5)
+        };
+        self.blended = blended.map(middle).collect();
         self.info = MeshesInfo {
             bodies: self.bodies.len() as u64,
             instances: self.instances.len() as u64,

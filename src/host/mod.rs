@@ -15,6 +15,7 @@ mod live_values;
 mod load;
 mod meshes;
 mod models;
+mod moving;
 pub mod params;
 pub mod picture;
 pub mod sequence;

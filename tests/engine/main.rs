@@ -5,6 +5,7 @@ mod compute;
 mod distance;
 mod draw;
 mod embed;
+mod everything;
 mod harness;
 mod lifecycle;
 mod meshes;
@@ -77,12 +78,16 @@ fn main() -> ExitCode {
         meshes::absent_meshes_are_no_bodies,
         meshes::materials_are_bound_by_name,
         meshes::animations_move_nodes,
+        meshes::what_blends_goes_from_back_to_front,
+        meshes::steps_see_meshes_move,
+        meshes::scenes_without_particles_are_dry,
         meshes::an_even_sky_makes_white_things_as_bright_as_it,
         meshes::meshes_cast_shadows_on_meshes,
         meshes::what_does_not_fit_is_told,
         distance::of_a_box,
         distance::of_a_sphere,
         distance::of_several_bodies,
+        everything::files_beside_the_repository_render,
         shipped::imai2016,
         shipped::imai2014,
         shipped::iwasaki2006,

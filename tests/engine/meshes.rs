@@ -238,6 +238,127 @@ pub fn animations_move_nodes(_: &mut Engine) {
     assert_eq!(at("animation: None", 0.5), [true, false, false]);
 }
 
+/// Two half-transparent squares, one before the other, also as bodies of one file and where time moves one of them.
+pub fn what_blends_goes_from_back_to_front(_: &mut Engine) {
+    let glass = |color: &str, more: &str, rest: &str| {
+        let factors = format!(r#""pbrMetallicRoughness": {{ "baseColorFactor": {color}, "roughnessFactor": 0.5 }}"#);
+        square(&format!(r#"{factors}, "alphaMode": "BLEND""#), more, rest)
+    };
+    let rest = r#", "animations": [{ "samplers": [{ "input": 3, "output": 4 }],
+        "channels": [{ "sampler": 0, "target": { "node": 0, "path": "translation" } }] }]"#;
+    let draw = DRAW.replace(r#", depth: Nearest("depth")"#, "").replace("cull: Back", "cull: None");
+    let draw = draw.replace("(0.0, 0.0, 0.0, 0.0)", "(0.0, 0.0, 0.0, 0.0), blend: Premultiplied");
+    let over = |bodies: &str, eye_z: f64, time_s: f64| {
+        let scene = scene(bodies).replace("eye: (0, 0, 3)", &format!("eye: (0, 0, {eye_z:?})"));
+        let files = files(graph("", &draw), scene)
+            .with("red.gltf", glass("[0.5, 0, 0, 1]", "", ""))
+            .with("blue.gltf", glass("[0, 0, 0.5, 1]", "", ""))
+            .with("moving.gltf", glass("[0, 0, 0.5, 1]", r#", "translation": [0, 0, 0]"#, rest));
+        seen(&files, Moment::at_time(time_s), &[[0.0, 0.0]])[0]
+    };
+    let (red_over_blue, blue_over_red) = ([0.5, 0.0, 0.25, 0.75], [0.25, 0.0, 0.5, 0.75]);
+    let (red, blue) =
+        (r#"(file: "red.gltf", position: (0, 0, 0.5))"#, r#"(file: "blue.gltf", position: (0, 0, -0.5))"#);
+    for bodies in [format!("{red}, {blue}"), format!("{blue}, {red}")] {
+        assert_eq!(over(&bodies, 3.0, 0.0), red_over_blue, "{bodies}");
+        assert_eq!(over(&bodies, -3.0, 0.0), blue_over_red, "{bodies}");
+    }
+    // Bodies of one file stand on both sides of the other.
+    let around = r#"(file: "blue.gltf", instances: [(position: (0, 0, 1)), (position: (0, 0, -1))])"#;
+    let three = [0.25, 0.0, 0.625, 0.875];
+    assert_eq!(over(&format!("{red}, {around}"), 3.0, 0.0), three);
+    // The node goes along x by 2, which the body turns into -z.
+    let moving = r#"(file: "moving.gltf", position: (0, 0, 1), rotation: (0, 90, 0), loop: false)"#;
+    let flat = r#"(file: "red.gltf", position: (0, 0, 0), rotation: (0, 90, 0))"#;
+    let wide = |time_s: f64| over(&format!("{flat}, {moving}"), 3.0, time_s);
+    assert_eq!([wide(0.0), wide(1.0)], [[0.0; 4]; 2], "both are seen from their edges");
+}
+
+/// A step adds up where a node is that moves by 2 along x in a second.
+const ADD: &str = r#"
+#import "lib/meshes.wgsl"
+
+struct Params {
+    step: u32,
+}
+
+var<uniform> params: Params;
+var<storage, read> meshes_instances: array<Instance>;
+var<storage, read_write> sum: array<f32>;
+
+@compute @workgroup_size(1)
+fn add() {
+    if params.step == 0u {
+        sum[0] = 0.0;
+        sum[1] = 0.0;
+    }
+    sum[0] += meshes_instances[0].body_from_mesh[3].x;
+    sum[1] += 1.0;
+}
+"#;
+
+const SHOW: &str = r#"
+var<storage, read> sum: array<f32>;
+
+@fragment
+fn show() -> @location(0) vec4f {
+    return vec4f(sum[0], sum[1], 0.0, 1.0);
+}
+"#;
+
+/// Steps see animated meshes where they are at the step's time, not at the frame's.
+pub fn steps_see_meshes_move(_: &mut Engine) {
+    let graph = r#"Graph(
+        inputs: { "meshes": Meshes },
+        state: { "sum": Buffer(items: 2) },
+        resources: { "color": Texture(format: Rgba32Float, size: "viewport") },
+        passes: [
+            Steps(rate: 10, passes: [Compute(shader: "add.wgsl", groups: 1)]),
+            Fullscreen(shader: "show.wgsl", color: ["color"]),
+        ],
+        outputs: ["color"],
+    )"#;
+    let rest = r#", "animations": [{ "samplers": [{ "input": 3, "output": 4 }],
+        "channels": [{ "sampler": 0, "target": { "node": 0, "path": "translation" } }] }]"#;
+    let at = |how: &str, time_s: f64| {
+        let scene = scene(&format!(r#"(file: "moving.gltf", {how})"#));
+        let moving = square("", r#", "translation": [0, 0, 0]"#, rest);
+        let files = files(graph.to_owned(), scene).with("moving.gltf", moving);
+        let files = files.with("add.wgsl", ADD).with("show.wgsl", SHOW);
+        let [sum, steps, ..] = seen(&files, Moment::at_time(time_s), &[[0.0, 0.0]])[0];
+        (f64::from(sum), steps)
+    };
+    let (sum, steps) = at("loop: false", 0.55);
+    assert!((sum - (0.2 + 0.4 + 0.6 + 0.8 + 1.0)).abs() < 1e-5 && steps == 5.0, "{sum} in {steps}");
+    let (sum, steps) = at("loop: false", 1.25);
+    assert!((sum - (2.0 * 5.5 + 2.0 * 2.0)).abs() < 1e-5 && steps == 12.0, "{sum} in {steps}");
+    assert_eq!(at("animation: None", 1.25), (0.0, 12.0));
+}
+
+/// Scenes of meshes alone: the shipped graphs show what is dry.
+pub fn scenes_without_particles_are_dry(_: &mut Engine) {
+    let of = |graph: &str, meshes: &str| {
+        let view = r#"camera: Camera(eye: (0, 0, 3), target: (0, 0, 0)), size: (64, 64)"#;
+        let light = r#"lights: {"sun": Light(direction: (-0.3, -0.5, -1.0), intensity: 4.0)}"#;
+        format!("Scene(graph: {graph:?}, {view}, {light}, {meshes})")
+    };
+    for graph in ["imai2016.ron", "imai2014.ron"] {
+        let files = files(String::new(), of(graph, r#"meshes: {"meshes": ["red.gltf"]}"#));
+        let found = seen(&files, Moment::default(), &[[0.0, 0.0], [0.0, 1.9], [0.0, -1.2]]);
+        let [middle, above, floor] = found[..] else { panic!() };
+        assert!(middle[0] > 4.0 * middle[2] && middle[3] == 1.0, "{graph}: {middle:?}");
+        assert_eq!(above, NOTHING, "{graph}");
+        assert!(floor[3] > 0.9 && floor[0] < 4.0 * floor[2], "{graph}: {floor:?}");
+    }
+    // Who has neither forgot the particles.
+    let nothing = of("imai2016.ron", "");
+    let (mut sources, mut cache) = (Sources::new(), Cache::default());
+    let job = Job { source: PathBuf::from("scene.ron"), ..Job::default() };
+    let loaded = load(&MemoryFiles::default().with("scene.ron", nothing), &mut sources, &job, &mut cache);
+    let said = render_all(&loaded.diagnostics, &sources, Style::Plain);
+    assert!(said.contains("nothing feeds the input `particles`"), "{said}");
+}
+
 /// The dry scene with squares in it, under a sky that is the same everywhere.
 fn lit(bodies: &str, sky: u8, (direction, sun): ((f64, f64, f64), f64), points: &[[f32; 2]]) -> Vec<[f32; 4]> {
     let mut png = std::io::Cursor::new(Vec::new());

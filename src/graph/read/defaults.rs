@@ -42,6 +42,12 @@ pub(super) fn texture(d: &mut Decoder<'_>, fields: &Fields<'_>) -> Option<InputD
     Some(InputDefault::Texture(color))
 }
 
+/// `default: None`: no particles.
+pub(super) fn particles(d: &mut Decoder<'_>, fields: &Fields<'_>) -> Option<InputDefault> {
+    let node = fields.get("default")?;
+    d.choice(node, "`default` of `Particles`", &[("None", ())]).map(|()| InputDefault::NoParticles)
+}
+
 fn is_tuple_of(node: &Node, n: usize) -> bool {
     matches!(&node.kind, Kind::Tagged(Tagged { body: Body::Items(items), .. }) if items.len() == n)
 }

@@ -22,7 +22,7 @@ pub(super) fn input(d: &mut Decoder<'_>, entry: &Named<'_>) -> Option<Input> {
     let (word, tag) = tagged(d, entry.node, &what, "a kind of input such as `Camera` or `Texture`")?;
     let owner = format!("`{}`", word.value);
     let known: &[&str] = match word.value.as_str() {
-        "Particles" => &["attributes", "optional"],
+        "Particles" => &["attributes", "optional", "default"],
         "Texture" => &["dimension", "optional", "default"],
         "Light" => &["optional", "default"],
         "Meshes" => &["optional", "values"],
@@ -38,6 +38,7 @@ pub(super) fn input(d: &mut Decoder<'_>, entry: &Named<'_>) -> Option<Input> {
     let default = match word.value.as_str() {
         "Light" => defaults::light(d, &fields),
         "Texture" => defaults::texture(d, &fields),
+        "Particles" => defaults::particles(d, &fields),
         _ => None,
     };
     defaults::not_optional(d, &fields);

@@ -1,0 +1,106 @@
+//! Frames of things that move: nodes of animated meshes stand where their time says, in steps where the
+//! step's does, and blended primitives are drawn from back to front.
+
+use std::collections::BTreeMap;
+
+use super::inputs::Input;
+use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::engine::{Engine, Frame, Report, Runner};
+use crate::plan::meshes::MeshBuffer;
+use crate::plan::model::{Object, ObjectRef, Origin, Plan};
+use crate::scene::Camera;
+
+/// Inputs by name, and the time in seconds at which those of them that move stand.
+pub(super) struct Moving<'a> {
+    pub inputs: &'a BTreeMap<String, Input>,
+    pub camera: &'a Camera,
+    pub moved_s: &'a mut Option<f64>,
+}
+
+impl Moving<'_> {
+    /// Runs a frame. Steps that see meshes move run one at a time, each with these where they are
+    /// then; all others run as the engine does them.
+    pub fn run(&mut self, engine: &Engine, runner: &mut Runner, frame: &Frame<'_>) -> Result<Report, Diagnostics> {
+        let mut left = frame.steps.to_vec();
+        for index in self.seeing_steps(runner.plan()) {
+            let due = left.get_mut(index).map_or(0, std::mem::take);
+            for _ in 0..due {
+                self.step(engine, runner, frame, index)?;
+            }
+        }
+        self.move_to(engine, runner, frame.time)?;
+        self.sort(runner, frame.time);
+        runner.run(engine, &Frame { steps: &left, ..*frame })
+    }
+
+    /// One step of `plan.steps[index]`, with what comes before it in the program.
+    fn step(
+        &mut self,
+        engine: &Engine,
+        runner: &mut Runner,
+        frame: &Frame<'_>,
+        index: usize,
+    ) -> Result<(), Diagnostics> {
+        let steps = &runner.plan().steps[index];
+        let done = runner.steps_done()[index];
+        let time_s = steps.rate.map_or(frame.time, |rate| (done + 1) as f64 / rate);
+        let end = steps.passes.end;
+        let is_asked = |pass: usize| frame.only.is_none_or(|only| only.get(pass) != Some(&false));
+        let only: Vec<bool> = (0..runner.plan().passes.len()).map(|pass| pass < end && is_asked(pass)).collect();
+        let mut one = vec![0; runner.plan().steps.len()];
+        one[index] = 1;
+        self.move_to(engine, runner, time_s)?;
+        runner.run(engine, &Frame { steps: &one, only: Some(&only), ..*frame })?;
+        Ok(())
+    }
+
+    /// The `Steps` at a rate in which a pass reads where animated meshes are, in program order.
+    fn seeing_steps(&self, plan: &Plan) -> Vec<usize> {
+        let moves = |object: &ObjectRef| match object {
+            ObjectRef::Fixed(id) => self.is_moving(&plan.objects[*id]),
+            ObjectRef::Ring { .. } => false,
+        };
+        let sees = |index: &usize| {
+            let steps = &plan.steps[*index];
+            let passes = plan.passes.get(steps.passes.clone()).unwrap_or_default();
+            steps.rate.is_some() && passes.iter().flat_map(|pass| &pass.accesses).any(|access| moves(&access.object))
+        };
+        let mut seeing: Vec<usize> = (0..plan.steps.len()).filter(sees).collect();
+        seeing.sort_by_key(|index| plan.steps[*index].passes.start);
+        seeing
+    }
+
+    fn is_moving(&self, object: &Object) -> bool {
+        let Origin::Mesh { input, buffer: MeshBuffer::Instances } = &object.origin else { return false };
+        matches!(self.inputs.get(input), Some(Input::Meshes(meshes)) if meshes.info.animated)
+    }
+
+    /// Puts what time moves where it is at a time in seconds.
+    fn move_to(&mut self, engine: &Engine, runner: &mut Runner, time_s: f64) -> Result<(), Diagnostic> {
+        // While time stands, nothing is new.
+        if self.moved_s.replace(time_s) == Some(time_s) {
+            return Ok(());
+        }
+        for id in 0..runner.plan().objects.len() {
+            let object = &runner.plan().objects[id];
+            if self.is_moving(object)
+                && let Some(Input::Meshes(meshes)) = object.origin.input().and_then(|name| self.inputs.get(name))
+            {
+                runner.upload_buffer(engine, id, &meshes.instances(time_s))?;
+            }
+        }
+        Ok(())
+    }
+
+    /// What blends goes from back to front, as the camera sees it.
+    fn sort(&self, runner: &mut Runner, time_s: f64) {
+        for (name, input) in self.inputs {
+            if let Input::Meshes(meshes) = input
+                && meshes.blends_several()
+            {
+                let away_m = meshes.away_m(self.camera.eye.as_vec3(), time_s);
+                runner.sort_blended(name, &|instance| away_m.get(&instance).copied().unwrap_or(0.0));
+            }
+        }
+    }
+}
