@@ -303,6 +303,42 @@ fn inputs_have_defaults() {
     assert_eq!(drawn("scenes/dots.ron", &[]), lit);
 }
 
+/// Rows of a table that the graph gives, and a scene's, which win.
+#[test]
+fn tables_have_defaults() {
+    let project = Project::empty();
+    let graph = r#"Graph(
+        inputs: { "lamps": Table(default: [(color: (0, 0.5, 0), power: 2), (color: (1, 1, 1), power: 0)]) },
+        resources: { "picture": Texture(format: Rgba16Float, size: "viewport") },
+        passes: [ Fullscreen(shader: "lamps.wgsl", color: ["picture"]) ],
+        outputs: ["picture"],
+    )"#;
+    let shader = "struct Lamp { power: f32, color: vec3f }
+        var<storage, read> lamps: array<Lamp>;
+        @fragment fn lit() -> @location(0) vec4f {
+            var sum = vec3f(0.0);
+            for (var i = 0u; i < arrayLength(&lamps); i++) { sum += lamps[i].power * lamps[i].color; }
+            return vec4f(sum, 1.0);
+        }";
+    project.write("graphs/lamps.ron", graph);
+    project.write("shaders/lamps.wgsl", shader);
+    project.write("a.ron", "Scene(graph: \"lamps.ron\", camera: Camera(eye: (0, 0, 1), target: (0, 0, 0)))");
+    let given = "target: (0, 0, 0)), tables: { \"lamps\": [(color: (0, 0, 1), power: 3)] })";
+    project.write("b.ron", project.text("a.ron").replace("target: (0, 0, 0)))", given));
+    good(project.run(&["check", "--deny-warnings", "graphs/lamps.ron", "a.ron", "b.ron"]));
+    project.write("c.ron", project.text("b.ron").replace("power", "might"));
+    if !has_adapter() {
+        return;
+    }
+    let drawn = |scene: &str| {
+        good(project.run(&["render", scene, "-o", "a.exr", "--size", "4x4"]));
+        image::open(project.path("a.exr")).unwrap().into_rgba32f().get_pixel(1, 1).0
+    };
+    assert_eq!(drawn("a.ron"), [0.0, 1.0, 0.0, 1.0]);
+    assert_eq!(drawn("b.ron"), [0.0, 0.0, 3.0, 1.0]);
+    refused(&project, &["render", "c.ron", "-o", "c.exr"], 1, &["power"]);
+}
+
 /// A graph with state moves on with time, and sees the scene's pointer and the command line's.
 #[test]
 fn a_new_graph_with_state_runs_and_sees_the_pointer() {

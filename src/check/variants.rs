@@ -1,7 +1,8 @@
 //! The stand-in scene, and the variants of it that are checked.
 
 use super::device::Device;
-use crate::graph::model::{InputKind, ParamKind};
+use crate::graph::model::{InputDefault, InputKind, ParamKind};
+use crate::graph::rows::Row;
 use crate::graph::value::Value;
 use crate::plan::model::{InputInfo, Param, Plan, Request};
 use crate::program::Program;
@@ -19,14 +20,14 @@ pub(super) fn base(program: &Program, device: &Device) -> Request {
         limits: device.limits.clone(),
     };
     for input in &program.root.inputs {
-        if let Some(info) = stand_in(program, &input.kind) {
+        if let Some(info) = stand_in(program, &input.kind, input.default.as_ref()) {
             request.inputs.insert(input.name.value.clone(), info);
         }
     }
     request
 }
 
-fn stand_in(program: &Program, kind: &InputKind) -> Option<InputInfo> {
+fn stand_in(program: &Program, kind: &InputKind, default: Option<&InputDefault>) -> Option<InputInfo> {
     match kind {
         InputKind::Camera => Some(InputInfo::Camera),
         InputKind::Light => Some(InputInfo::Light),
@@ -44,7 +45,12 @@ fn stand_in(program: &Program, kind: &InputKind) -> Option<InputInfo> {
         }
         InputKind::Meshes { .. } => Some(InputInfo::Meshes(crate::plan::meshes::stand_in())),
         InputKind::Buffer | InputKind::Counted => Some(InputInfo::Buffer { items: 1000, stride: 4 }),
-        InputKind::Table => Some(InputInfo::Table { rows: vec![Default::default(); 4] }),
+        InputKind::Table => Some(InputInfo::Table {
+            rows: match default {
+                Some(InputDefault::Table(rows)) => rows.clone(),
+                _ => vec![Row::default(); 4],
+            },
+        }),
     }
 }
 

@@ -8,6 +8,7 @@ pub mod eval;
 pub mod expr;
 pub mod model;
 mod read;
+pub mod rows;
 pub mod value;
 
 pub use read::{SAMPLERS, SCALARS, read};

@@ -6,6 +6,7 @@ mod raster;
 use std::path::PathBuf;
 
 use super::expr::Expr;
+use super::rows::Row;
 use super::value::Value;
 use crate::diagnostic::{FileId, Span};
 use crate::format::TextureFormat;
@@ -56,6 +57,7 @@ pub enum InputDefault {
     Texture([f64; 4]),
     /// No particles.
     NoParticles,
+    Table(Vec<Row>),
 }
 
 #[derive(Clone, Debug)]

@@ -16,6 +16,7 @@ use super::sequence::Track;
 use crate::diagnostic::{Code, Diagnostic, Diagnostics, Span};
 use crate::format::TextureFormat;
 use crate::graph::model::{Graph, Input as Declared, InputDefault, InputKind};
+use crate::graph::rows::Row;
 use crate::graph::value::Value;
 use crate::plan::fields::{self, FieldType};
 use crate::plan::model::{InputInfo, Texture};
@@ -32,7 +33,7 @@ pub enum Input {
     Particles(Arc<Particles>),
     Image(Arc<Image>),
     Meshes(Arc<Meshes>),
-    Table(Vec<BTreeMap<String, Value>>),
+    Table(Vec<Row>),
 }
 
 /// A particle file of the scene or the command line.
@@ -299,6 +300,7 @@ impl Input {
                 };
                 Input::Particles(Arc::new(Particles::none(&names)))
             }
+            InputDefault::Table(rows) => Input::Table(rows.clone()),
         }
     }
 

@@ -1,6 +1,5 @@
 //! What a scene file says.
 
-use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use glam::DMat4;
@@ -9,6 +8,7 @@ use super::camera::{Camera, Light};
 use super::pointer::PointerPath;
 use super::sequence::Sequence;
 use crate::diagnostic::{FileId, Span};
+use crate::graph::rows::Row;
 use crate::graph::value::Value;
 use crate::syntax::Sp;
 
@@ -33,7 +33,7 @@ pub struct Scene {
     pub textures: Vec<Item<Sp<String>>>,
     /// The environment, where it is a cube.
     pub cube: Option<Item<CubeFiles>>,
-    pub tables: Vec<Item<Vec<BTreeMap<String, Value>>>>,
+    pub tables: Vec<Item<Vec<Row>>>,
     /// Values of the graph's parameters by instance path.
     pub params: Vec<Item<Value>>,
     /// Values of the parameters of the graph that turns light into a picture.

@@ -4,7 +4,6 @@ mod bodies;
 mod environment;
 mod sources;
 
-use std::collections::BTreeMap;
 use std::path::Path;
 
 use glam::DVec3;
@@ -14,7 +13,8 @@ use super::model::{Item, Scene};
 use super::pointer::{PointerPath, Pointing};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics, Sources, Span};
 use crate::graph::value::Value;
-use crate::syntax::{self, Body, Decoder, Fields, Kind, Node, Sp, Tagged};
+use crate::graph::rows::{self, Row};
+use crate::syntax::{self, Decoder, Fields, Node, Sp, Tagged};
 
 const FIELDS: &[&str] = &[
     "about",
@@ -198,52 +198,12 @@ impl Reader<'_> {
     }
 
     /// Rows, each `(name: value, ...)` or `{"name": value, ...}`.
-    fn table(&mut self, node: &Node, what: &str) -> Option<Vec<BTreeMap<String, Value>>> {
-        let rows = self.decoder.list(node, what)?;
-        let read: Vec<_> = rows.iter().map(|row| self.row(row, what)).collect();
-        read.into_iter().collect()
+    fn table(&mut self, node: &Node, what: &str) -> Option<Vec<Row>> {
+        rows::rows(&mut self.decoder, node, what)
     }
 
-    fn row(&mut self, node: &Node, what: &str) -> Option<BTreeMap<String, Value>> {
-        let entries: Vec<(Sp<String>, &Node)> = match &node.kind {
-            Kind::Map(_) => self.decoder.map(node, what)?,
-            Kind::Tagged(Tagged { name: None, body: Body::Fields(fields), .. }) => {
-                fields.iter().map(|(name, value)| (name.clone(), value)).collect()
-            }
-            _ => {
-                self.decoder.wrong(node, what, "a row of named values in brackets");
-                return None;
-            }
-        };
-        let mut row = BTreeMap::new();
-        let mut good = true;
-        for (name, node) in entries {
-            match self.value(node, &format!("`{}` of {what}", name.value)) {
-                Some(value) => _ = row.insert(name.value, value),
-                None => good = false,
-            }
-        }
-        good.then_some(row)
-    }
-
-    /// A number, a truth value, a word (also in quotes) or a tuple of 2 to 4 numbers.
     fn value(&mut self, node: &Node, what: &str) -> Option<Value> {
-        match &node.kind {
-            Kind::Bool(b) => Some(Value::Bool(*b)),
-            Kind::Int(i) => Some(Value::Int(*i)),
-            Kind::Float(_) => self.decoder.float(node, what).map(Value::Float),
-            Kind::Str(s) => Some(Value::Word(s.value.clone())),
-            Kind::Tagged(Tagged { name: Some(word), body: Body::Unit, .. }) => Some(Value::Word(word.value.clone())),
-            Kind::Tagged(Tagged { name: None, body: Body::Items(_), .. }) => {
-                let items = self.decoder.items(node, what, "a tuple of 2 to 4 numbers", 2..=4)?;
-                let numbers: Vec<_> = items.iter().map(|item| self.decoder.float(item, what)).collect();
-                numbers.into_iter().collect::<Option<Vec<f64>>>().map(Value::vec)
-            }
-            _ => {
-                self.decoder.wrong(node, what, "a number, a truth value, a word or a tuple of numbers");
-                None
-            }
-        }
+        rows::value(&mut self.decoder, node, what)
     }
 
     fn file_name(&mut self, node: &Node, what: &str) -> Option<Sp<String>> {

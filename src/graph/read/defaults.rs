@@ -3,6 +3,7 @@
 use super::values::tagged;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::graph::model::InputDefault;
+use crate::graph::rows;
 use crate::syntax::{Body, Decoder, Fields, Kind, Node, Tagged};
 
 /// `default: Light(direction: ..., color: ..., intensity: ...)`.
@@ -46,6 +47,11 @@ pub(super) fn texture(d: &mut Decoder<'_>, fields: &Fields<'_>) -> Option<InputD
 pub(super) fn particles(d: &mut Decoder<'_>, fields: &Fields<'_>) -> Option<InputDefault> {
     let node = fields.get("default")?;
     d.choice(node, "`default` of `Particles`", &[("None", ())]).map(|()| InputDefault::NoParticles)
+}
+
+/// `default: [(name: value, ...), ...]`: rows, as a scene writes them.
+pub(super) fn table(d: &mut Decoder<'_>, fields: &Fields<'_>) -> Option<InputDefault> {
+    rows::rows(d, fields.get("default")?, "`default` of `Table`").map(InputDefault::Table)
 }
 
 fn is_tuple_of(node: &Node, n: usize) -> bool {

@@ -24,7 +24,7 @@ pub(super) fn input(d: &mut Decoder<'_>, entry: &Named<'_>) -> Option<Input> {
     let known: &[&str] = match word.value.as_str() {
         "Particles" => &["attributes", "optional", "default"],
         "Texture" => &["dimension", "optional", "default"],
-        "Light" => &["optional", "default"],
+        "Light" | "Table" => &["optional", "default"],
         "Meshes" => &["optional", "values"],
         kind if KINDS.contains(&kind) => &["optional"],
         _ => {
@@ -39,6 +39,7 @@ pub(super) fn input(d: &mut Decoder<'_>, entry: &Named<'_>) -> Option<Input> {
         "Light" => defaults::light(d, &fields),
         "Texture" => defaults::texture(d, &fields),
         "Particles" => defaults::particles(d, &fields),
+        "Table" => defaults::table(d, &fields),
         _ => None,
     };
     defaults::not_optional(d, &fields);

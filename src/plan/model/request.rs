@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use wgpu_types::{Features, Limits};
 
 use super::{MemoryRequest, Texture};
+use crate::graph::rows::Row;
 use crate::graph::value::Value;
 use crate::plan::meshes::MeshesInfo;
 
@@ -63,7 +64,7 @@ pub enum InputInfo {
     },
     /// Rows, each with named values.
     Table {
-        rows: Vec<BTreeMap<String, Value>>,
+        rows: Vec<Row>,
     },
     Meshes(MeshesInfo),
 }
