@@ -5,11 +5,11 @@
 use std::borrow::Cow;
 use std::collections::HashMap;
 
-use meniscus::engine::packing;
 use meniscus::graph::eval::eval_live;
 use meniscus::graph::model::{Compare, Face, Factor, Operation, Topology};
 use meniscus::graph::value::Value;
 use meniscus::plan::model::*;
+use meniscus::plan::packing;
 use meniscus::shader::reflect::TextureDimension;
 use wgpu::util::DeviceExt as _;
 

@@ -21,7 +21,6 @@ mod kernels;
 mod materials;
 mod meshes;
 mod mips;
-pub mod packing;
 mod pipeline;
 mod pool;
 mod prepare;

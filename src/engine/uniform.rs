@@ -9,7 +9,6 @@ use std::borrow::Cow;
 use std::ops::Range;
 
 use super::gpu::Gpu;
-use super::packing;
 use super::run::StepInfo;
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::graph::eval::eval_live;
@@ -17,6 +16,7 @@ use crate::graph::expr::ExprKind;
 use crate::graph::value::Value;
 use crate::plan::changes::Changes;
 use crate::plan::model::{Bound, Pass, PassKind, Plan, ShaderUse, UniformMember, UniformValue};
+use crate::plan::packing;
 
 /// What gives live names (`time`, `camera.position`) their values.
 pub(super) type Live<'a> = &'a dyn Fn(&str, Option<&StepInfo>) -> Option<Value>;

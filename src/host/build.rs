@@ -11,14 +11,13 @@ use super::meshes::Meshes;
 use super::sequence::Track;
 use super::state::Held;
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
-use crate::engine::{Compiled, Compiler, Engine, Gpu, MaterialImage, MaterialSampler, MaterialSlots, Runner, packing};
-use crate::graph::value::Value;
+use crate::engine::{Compiled, Compiler, Engine, Gpu, MaterialImage, MaterialSampler, MaterialSlots, Runner};
 use crate::plan;
 use crate::plan::meshes::MeshBuffer;
 use crate::plan::model::{Buffer, MemoryRequest, Object, ObjectId, ObjectKind, ObjectRef, Origin, Plan, Texture};
+use crate::plan::packing;
 use crate::scene::meshes::{Filter, Sampler, Wrap};
 use crate::scene::{PointerPath, Pointing, convert};
-use crate::shader::reflect::Type;
 
 /// A device, and what is built on it.
 #[derive(Debug)]
@@ -386,7 +385,7 @@ fn fill(engine: &Engine, runner: &mut Runner, id: usize, input: &Input) -> Resul
             runner.upload_texture(engine, id, 0, 0, bytemuck::cast_slice(image.texels.as_flattened()))
         }
         (_, ObjectKind::Buffer(buffer), Input::Table(rows)) => {
-            let bytes = table(rows, buffer.item.as_ref(), buffer.stride)
+            let bytes = packing::rows(rows, buffer.item.as_ref(), buffer.stride)
                 .map_err(|why| Diagnostic::error(Code::BINDING_MISMATCH, why).at(object.span, "asked for here"))?;
             runner.upload_buffer(engine, id, &bytes)
         }
@@ -448,25 +447,4 @@ fn material_sampler(about: Sampler) -> MaterialSampler {
     });
     let (wrap_u, wrap_v) = (wrap(about.wrap_u), wrap(about.wrap_v));
     MaterialSampler { wrap_u, wrap_v, mag: filter(about.mag), min: filter(about.min), mip }
-}
-
-/// Rows of named values as items of a struct.
-fn table(rows: &[BTreeMap<String, Value>], item: Option<&Type>, stride: u32) -> Result<Vec<u8>, String> {
-    let Some(Type::Struct { name, members, .. }) = item else {
-        return Err("a table feeds a buffer of structs, whose members its values are named after".into());
-    };
-    let mut bytes = vec![0; rows.len() * stride as usize];
-    for (index, (row, out)) in rows.iter().zip(bytes.chunks_exact_mut(stride.max(1) as usize)).enumerate() {
-        for member in members {
-            let value =
-                row.get(&member.name).ok_or_else(|| format!("row {index} lacks `{}` of `{name}`", member.name))?;
-            let place = out.get_mut(member.offset as usize..).unwrap_or_default();
-            packing::encode(value, &member.ty, place)
-                .map_err(|why| format!("row {index}, `{}`: {why}", member.name))?;
-        }
-        if let Some(other) = row.keys().find(|key| members.iter().all(|m| m.name != **key)) {
-            return Err(format!("row {index} has `{other}`, which `{name}` has not"));
-        }
-    }
-    Ok(bytes)
 }

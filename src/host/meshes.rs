@@ -8,9 +8,9 @@ use std::sync::Arc;
 use glam::{DMat4, Mat4, Vec3};
 
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
-use crate::engine::packing;
 use crate::graph::value::Value;
 use crate::plan::meshes::{Faces, INSTANCE_BYTES, MaterialTexture, MeshDraw, MeshesInfo, VertexAttribute};
+use crate::plan::packing;
 use crate::scene::MeshEntry;
 use crate::scene::Playing;
 use crate::scene::image::Stored;

@@ -18,6 +18,7 @@ pub mod meshes;
 pub mod model;
 pub mod needs;
 mod order;
+pub mod packing;
 pub mod print;
 mod state;
 mod units;
@@ -78,6 +79,7 @@ fn plan(program: &Program, request: &Request, mode: Mode) -> Result<Plan, Diagno
         return Err(lowering.diagnostics);
     }
     flow::check(&mut lowering, &outputs);
+    tables(&mut lowering);
     if lowering.diagnostics.has_errors() {
         return Err(lowering.diagnostics);
     }
@@ -106,6 +108,29 @@ fn plan(program: &Program, request: &Request, mode: Mode) -> Result<Plan, Diagno
     mark_unordered(&mut lowering);
     let told = Told { culled, order, warnings };
     finish(lowering, outputs, &own, told, units, argument_slots)
+}
+
+/// The rows that are given must be what the shader's struct asks for.
+fn tables(lowering: &mut Lowering<'_>) {
+    let mut found = Vec::new();
+    for building in &lowering.objects {
+        let model::Origin::Input(name) = &building.object.origin else { continue };
+        let (Some(model::InputInfo::Table { rows }), Some(layout)) =
+            (lowering.request.inputs.get(name), &building.layout)
+        else {
+            continue;
+        };
+        // Rows that are made up have no values.
+        if rows.iter().all(|row| row.is_empty()) {
+            continue;
+        }
+        if let Err(why) = packing::rows(rows, Some(&layout.item), layout.stride) {
+            let message = format!("the rows of `{name}` are not what the shader asks for: {why}");
+            let diagnostic = Diagnostic::error(Code::BINDING_MISMATCH, message).at(building.object.span, "the table");
+            found.push(diagnostic.see(layout.span, "what it is for the shader"));
+        }
+    }
+    found.into_iter().for_each(|diagnostic| lowering.diagnostics.push(diagnostic));
 }
 
 /// What planning says of what it did.

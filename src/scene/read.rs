@@ -12,8 +12,8 @@ use super::camera::{Camera, Light};
 use super::model::{Item, Scene};
 use super::pointer::{PointerPath, Pointing};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics, Sources, Span};
-use crate::graph::value::Value;
 use crate::graph::rows::{self, Row};
+use crate::graph::value::Value;
 use crate::syntax::{self, Decoder, Fields, Node, Sp, Tagged};
 
 const FIELDS: &[&str] = &[

@@ -1,5 +1,6 @@
 //! Values as bytes of WGSL types, for uniforms and tables. No GPU here.
 
+use crate::graph::rows::Row;
 use crate::graph::value::Value;
 use crate::shader::reflect::{Scalar, Type};
 
@@ -38,6 +39,29 @@ pub fn encode(value: &Value, ty: &Type, out: &mut [u8]) -> Result<(), String> {
         }
         Type::Array { count: None, .. } | Type::Struct { .. } => Err(mismatch()),
     }
+}
+
+/// Rows of named values as items of a struct.
+///
+/// # Errors
+/// A message that says which row lacks what, or has too much.
+pub fn rows(rows: &[Row], item: Option<&Type>, stride: u32) -> Result<Vec<u8>, String> {
+    let Some(Type::Struct { name, members, .. }) = item else {
+        return Err("a table feeds a buffer of structs, whose members its values are named after".into());
+    };
+    let mut bytes = vec![0; rows.len() * stride as usize];
+    for (index, (row, out)) in rows.iter().zip(bytes.chunks_exact_mut(stride.max(1) as usize)).enumerate() {
+        for member in members {
+            let value =
+                row.get(&member.name).ok_or_else(|| format!("row {index} lacks `{}` of `{name}`", member.name))?;
+            let place = out.get_mut(member.offset as usize..).unwrap_or_default();
+            encode(value, &member.ty, place).map_err(|why| format!("row {index}, `{}`: {why}", member.name))?;
+        }
+        if let Some(other) = row.keys().find(|key| members.iter().all(|m| m.name != **key)) {
+            return Err(format!("row {index} has `{other}`, which `{name}` has not"));
+        }
+    }
+    Ok(bytes)
 }
 
 fn vector(parts: &[Value], components: u32, scalar: Scalar, out: &mut [u8]) -> Option<()> {
