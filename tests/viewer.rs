@@ -13,6 +13,8 @@ mod graph;
 mod project;
 #[path = "viewer/sequences.rs"]
 mod sequences;
+#[path = "viewer/trouble.rs"]
+mod trouble;
 
 use std::path::PathBuf;
 use std::time::{Duration, Instant};

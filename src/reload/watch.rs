@@ -30,6 +30,8 @@ pub struct Watch {
     /// Absolute paths.
     files: BTreeSet<PathBuf>,
     folders: BTreeSet<PathBuf>,
+    /// Folders that those stand in.
+    above: BTreeSet<PathBuf>,
     /// Files that changed while they were not watched yet.
     missed: BTreeSet<PathBuf>,
 }
@@ -64,8 +66,8 @@ impl Watch {
         let waker = Waker(sender.clone());
         // A receiver that is gone wants no events.
         let watcher = notify::recommended_watcher(move |event| _ = sender.send((Instant::now(), Some(event))))?;
-        let (files, folders, missed) = <(BTreeSet<_>, BTreeSet<_>, BTreeSet<_>)>::default();
-        Ok(Self { watcher, events, waker, files, folders, missed })
+        let (files, folders, above, missed) = <(BTreeSet<_>, BTreeSet<_>, BTreeSet<_>, BTreeSet<_>)>::default();
+        Ok(Self { watcher, events, waker, files, folders, above, missed })
     }
 
     /// What ends a wait in [`Watch::next`].
@@ -89,13 +91,19 @@ impl Watch {
         for folder in folders.difference(&self.folders) {
             self.watcher.watch(folder, RecursiveMode::NonRecursive)?;
         }
-        for folder in self.folders.difference(&folders) {
+        // A folder that is moved away says nothing: the one that it stands in does.
+        let above: BTreeSet<PathBuf> = above(&folders).difference(&folders).cloned().collect();
+        for folder in above.difference(&self.above).filter(|folder| !self.folders.contains(*folder)) {
+            // It may be nobody's to look at; all else is seen without it.
+            _ = self.watcher.watch(folder, RecursiveMode::NonRecursive);
+        }
+        for folder in self.folders.union(&self.above).filter(|f| !folders.contains(*f) && !above.contains(*f)) {
             // It may have gone by itself.
             _ = self.watcher.unwatch(folder);
         }
         let saved_since = |file: &&PathBuf| saved(file).is_some_and(|saved| saved >= read_since);
         self.missed = files.difference(&self.files).filter(saved_since).cloned().collect();
-        (self.files, self.folders) = (files, folders);
+        (self.files, self.folders, self.above) = (files, folders, above);
         Ok(())
     }
 
@@ -150,7 +158,8 @@ impl Watch {
         };
         let concerned = |file: &&PathBuf| changes && event.paths.iter().any(|path| file.starts_with(path));
         // A watched folder reports itself when something in it is touched.
-        let itself = event.paths.iter().all(|path| self.folders.contains(path)) && path_is_there(event);
+        let is_watched = |path: &PathBuf| self.folders.contains(path) || self.above.contains(path);
+        let itself = event.paths.iter().all(is_watched) && path_is_there(event);
         if itself { Vec::new() } else { self.files.iter().filter(concerned).cloned().collect() }
     }
 }
@@ -161,6 +170,19 @@ fn path_is_there(event: &notify::Event) -> bool {
 
 fn absolute(path: &Path) -> PathBuf {
     normalize(&std::path::absolute(path).unwrap_or_else(|_| path.to_owned()))
+}
+
+/// The folders above, up to the one around that in which all of them stand.
+fn above(folders: &BTreeSet<PathBuf>) -> BTreeSet<PathBuf> {
+    let (Some(first), Some(last)) = (folders.first(), folders.last()) else { return BTreeSet::new() };
+    // Of a sorted set the first and the last have no more in common than all.
+    let common = first.ancestors().find(|ancestor| last.starts_with(ancestor));
+    let end = common.and_then(Path::parent).or(common);
+    let up = |folder: &PathBuf| {
+        let chain = folder.ancestors().skip(1).map(Path::to_owned);
+        chain.take_while(|ancestor| end.is_some_and(|end| ancestor.starts_with(end))).collect::<Vec<_>>()
+    };
+    folders.iter().flat_map(up).collect()
 }
 
 /// The folder to watch for a file: its own, or the nearest above it that is there.
@@ -178,4 +200,19 @@ fn noticing(files: &BTreeSet<PathBuf>, first: Instant) -> Duration {
     let since_save = files.iter().filter_map(|file| now.duration_since(saved(file)?).ok()).max();
     // A file that was moved into place may have been saved long ago.
     since_save.filter(|age| *age < since_event + Duration::from_secs(1)).unwrap_or(since_event).max(since_event)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_folders_above_end_around_all_of_them() {
+        let set = |all: &[&str]| all.iter().map(PathBuf::from).collect::<BTreeSet<_>>();
+        let found = above(&set(&["/home/a/p/graphs/parts", "/home/a/p/graphs", "/home/a/p/shaders/dots"]));
+        assert_eq!(found, set(&["/home/a", "/home/a/p", "/home/a/p/graphs", "/home/a/p/shaders"]));
+        assert_eq!(above(&set(&["/a/b", "/c"])), set(&["/", "/a"]));
+        assert_eq!(above(&set(&["/a"])), set(&["/"]));
+        assert_eq!(above(&set(&[])), set(&[]));
+    }
 }

@@ -26,6 +26,8 @@ pub use record::{Recording, free_name};
 
 /// A window that is being resized asks for another picture size after this rest.
 const RESIZE_REST: Duration = Duration::from_millis(120);
+/// A frame that takes longer is told.
+const PATIENCE: Duration = Duration::from_secs(10);
 /// How often an unfinished frame is looked after.
 const POLL: Duration = Duration::from_millis(2);
 
@@ -94,7 +96,11 @@ impl Core {
             session,
             screen,
             worker,
-            state: State { device: format!("{} ({:?})", info.name, info.backend), ..State::default() },
+            state: State {
+                device: format!("{} ({:?})", info.name, info.backend),
+                patience: PATIENCE,
+                ..State::default()
+            },
             sources: Sources::new(),
             wants: Wants::default(),
             sent: Wants::default(),
@@ -191,6 +197,10 @@ impl Core {
 
     /// The size that the picture should have, in pixels.
     pub fn want_size(&mut self, size: [u32; 2]) {
+        if size.contains(&0) {
+            // A window without area shows nothing, and what it showed comes back with it.
+            return;
+        }
         let fixed = self.state.job.as_ref().and_then(|job| job.size);
         let wanted = Some(fixed.unwrap_or(size));
         if self.state.recording.is_some() && self.opening.is_none() {

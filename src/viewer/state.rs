@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::path::{Path, PathBuf};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use glam::DVec3;
 
@@ -56,6 +56,10 @@ pub struct State {
     pub reloads: VecDeque<Reload>,
     /// Since when the worker has something to do.
     pub busy: Option<Instant>,
+    /// A frame that takes longer is told.
+    pub patience: Duration,
+    /// How long the driver took to take the last frame's commands.
+    pub handing_over: Duration,
     /// For how long a frame has been drawn, as it was told last.
     pub waited_s: u64,
     /// A line for the person, with its time.
@@ -98,6 +102,8 @@ pub struct Reload {
     pub drawing_ms: Option<f64>,
     pub pipelines_built: usize,
     pub pipelines_kept: usize,
+    /// State that started anew, and why.
+    pub resets: Vec<String>,
     /// Built by the interface's thread, which then waited for them.
     pub pipelines_late: usize,
 }
@@ -141,16 +147,17 @@ pub fn listed(files: &[PathBuf]) -> String {
 
 /// The box around everything that has a place.
 pub fn bounds(content: &Content) -> Option<[DVec3; 2]> {
-    let mut found: Option<[DVec3; 2]> = None;
-    for input in content.inputs.values() {
-        let Input::Particles(particles) = input else { continue };
-        if particles.set.count == 0 {
-            continue;
+    let boxes = content.inputs.values().filter_map(|input| match input {
+        Input::Particles(particles) if particles.set.count > 0 => {
+            let r = DVec3::splat(particles.radius_m);
+            let corner = |at: [f32; 3]| DVec3::from_array(at.map(f64::from));
+            Some([corner(particles.set.min) - r, corner(particles.set.max) + r])
         }
-        let r = DVec3::splat(particles.radius_m);
-        let low = DVec3::from_array(particles.set.min.map(f64::from)) - r;
-        let high = DVec3::from_array(particles.set.max.map(f64::from)) + r;
-        found = Some(found.map_or([low, high], |[a, b]| [a.min(low), b.max(high)]));
-    }
-    found
+        Input::Meshes(meshes) if meshes.info.instances > 0 => {
+            Some([DVec3::from_array(meshes.info.min), DVec3::from_array(meshes.info.max)])
+        }
+        _ => None,
+    });
+    let finite = boxes.filter(|ends| ends.iter().all(|end| end.is_finite()));
+    finite.reduce(|[a, b], [low, high]| [a.min(low), b.max(high)])
 }

@@ -26,10 +26,29 @@ impl Desk {
         Self::of(Project::new())
     }
 
+    /// Opens what `meniscus new --state` makes.
+    pub fn stateful() -> Self {
+        let project = Project::empty();
+        let made = project.run(&["new", "dots", "--state"]);
+        assert_eq!(made.code, 0, "{}", made.stderr);
+        Self::of(project)
+    }
+
+    /// One whose picture follows the window.
+    pub fn resizable() -> Self {
+        let project = Project::new();
+        project.edit(SCENE, "    size: (800, 600),\n", "");
+        Self::sized(project, None)
+    }
+
     /// Opens the scene of a project.
     pub fn of(project: Project) -> Self {
+        Self::sized(project, Some([160, 120]))
+    }
+
+    fn sized(project: Project, size: Option<[u32; 2]>) -> Self {
         let gpu = Gpu::open(&GpuOptions::default()).unwrap();
-        let job = Job { source: project.path(SCENE), size: Some([160, 120]), ..Job::default() };
+        let job = Job { source: project.path(SCENE), size, ..Job::default() };
         let mut desk = Self { core: Core::new(gpu, Some(job), || {}).unwrap(), project, shots: 0 };
         desk.core.want_size([160, 120]);
         desk.until("the first picture", |core| core.state.frames > 0);

@@ -12,9 +12,6 @@ use crate::scene::Camera;
 /// Steps of simulations that run in one frame while time plays, and while it catches up.
 const MOST_STEPS: [u32; 2] = [4, 32];
 
-/// A frame that takes longer is told.
-const LONG_S: u64 = 10;
-
 /// What a frame was made of, to tell whether the next one would differ.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Made {
@@ -92,27 +89,30 @@ impl Core {
         self.stepped_s = Some(made.time_s);
         self.made = Some(made.clone());
         self.session.run_all(self.run_all || self.state.runs_all);
+        // Software drivers draw while they take the commands.
+        let began = Instant::now();
         let ran = self.session.submit(&live);
         let drawn = ran.and_then(|report| {
             self.run_all = false;
             self.state.units = report.units;
             self.session.show(&live, &mut self.screen)
         });
+        self.state.handing_over = began.elapsed();
         match drawn {
             Ok(changed) => {
                 self.screen_changed |= changed;
-                self.watch_frame();
+                self.watch_frame(began);
                 false
             }
             Err(found) => self.fail(found),
         }
     }
 
-    pub(super) fn watch_frame(&mut self) {
+    fn watch_frame(&mut self, since: Instant) {
         let done = Arc::new(AtomicBool::new(false));
         let told = Arc::clone(&done);
         self.session.gpu().when_done(move || told.store(true, Ordering::Release));
-        self.in_flight = Some(InFlight { done, since: Instant::now() });
+        self.in_flight = Some(InFlight { done, since });
     }
 
     /// Whether the frame on its way is done; its times and counts are taken then.
@@ -124,15 +124,22 @@ impl Core {
             return self.fail(gone.into());
         }
         if !in_flight.done.load(Ordering::Acquire) {
-            let seconds = in_flight.since.elapsed().as_secs();
-            let is_long = seconds >= LONG_S && seconds != self.state.waited_s;
+            let waited = in_flight.since.elapsed();
+            let seconds = waited.as_secs();
+            let is_long = waited >= self.state.patience && seconds != self.state.waited_s;
             if is_long {
                 self.state.waited_s = seconds;
                 self.state.say(format!("the device has been drawing for {seconds} s: a shader may loop for ever"));
             }
             return is_long;
         }
-        let drawing_ms = in_flight.since.elapsed().as_secs_f64() * 1e3;
+        let took = in_flight.since.elapsed();
+        let drawing_ms = took.as_secs_f64() * 1e3;
+        if took >= self.state.patience && self.state.waited_s == 0 {
+            let seconds = took.as_secs_f64();
+            self.state.say(format!("drawing took {seconds:.1} s: a shader may loop for long"));
+        }
+        self.state.waited_s = 0;
         self.in_flight = None;
         self.state.frames += 1;
         if std::mem::take(&mut self.reload_pending)

@@ -54,6 +54,10 @@ impl Core {
                 drawing_ms: None,
                 pipelines_built: built.as_ref().map_or(0, |b| b.pipelines_built),
                 pipelines_kept: built.as_ref().map_or(0, |b| b.pipelines_reused),
+                resets: built
+                    .as_ref()
+                    .map(|b| b.resets.iter().map(|d| d.message.clone()).collect())
+                    .unwrap_or_default(),
                 pipelines_late: built.as_ref().map_or(0, |b| b.pipelines_late),
             });
             self.reload_pending = built.is_some();

@@ -37,6 +37,9 @@ fn row(ui: &mut Ui, reload: &Reload) {
         let plural = if reload.errors == 1 { "" } else { "s" };
         format!("{} error{plural}, {ago}: the last good picture stays", reload.errors)
     };
+    for reset in &reload.resets {
+        ui.label(RichText::new(reset).color(theme::WARN));
+    }
     ui.weak(text).on_hover_text(format!(
         "noticing {:.1} ms, checking {:.1}, building {:.1}, drawing {}",
         reload.noticing_ms,
