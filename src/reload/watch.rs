@@ -32,6 +32,8 @@ pub struct Watch {
     folders: BTreeSet<PathBuf>,
     /// Folders that those stand in.
     above: BTreeSet<PathBuf>,
+    /// When the files of the set began to be read: what came before was read.
+    read_at: Instant,
     /// Files that changed while they were not watched yet.
     missed: BTreeSet<PathBuf>,
 }
@@ -67,7 +69,7 @@ impl Watch {
         // A receiver that is gone wants no events.
         let watcher = notify::recommended_watcher(move |event| _ = sender.send((Instant::now(), Some(event))))?;
         let (files, folders, above, missed) = <(BTreeSet<_>, BTreeSet<_>, BTreeSet<_>, BTreeSet<_>)>::default();
-        Ok(Self { watcher, events, waker, files, folders, above, missed })
+        Ok(Self { watcher, events, waker, files, folders, above, read_at: Instant::now(), missed })
     }
 
     /// What ends a wait in [`Watch::next`].
@@ -103,6 +105,8 @@ impl Watch {
         }
         let saved_since = |file: &&PathBuf| saved(file).is_some_and(|saved| saved >= read_since);
         self.missed = files.difference(&self.files).filter(saved_since).cloned().collect();
+        let ago = SystemTime::now().duration_since(read_since).unwrap_or_default();
+        self.read_at = Instant::now().checked_sub(ago).unwrap_or(self.read_at);
         (self.files, self.folders, self.above) = (files, folders, above);
         Ok(())
     }
@@ -126,7 +130,7 @@ impl Watch {
                 Ok((_, None)) => {}
                 Ok((at, Some(event))) => {
                     let found = self.relevant(&event?);
-                    if !found.is_empty() {
+                    if !found.is_empty() && at >= self.read_at {
                         first.get_or_insert(at);
                         last = Some(at);
                         changed.extend(found);

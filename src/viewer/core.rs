@@ -69,6 +69,8 @@ pub struct Core {
     fed_s: f64,
     /// The first picture after a reload is on its way.
     reload_pending: bool,
+    /// What files say now came to nothing.
+    is_load_bad: bool,
     screen_changed: bool,
     is_lost: bool,
     /// What was read last, of which frame and build.
@@ -114,6 +116,7 @@ impl Core {
             answered: When::Start,
             fed_s: 0.0,
             reload_pending: false,
+            is_load_bad: false,
             screen_changed: false,
             is_lost: false,
             looked: None,

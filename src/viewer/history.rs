@@ -8,6 +8,8 @@ use crate::engine::Report;
 pub const LENGTH: usize = 90;
 /// The part of a new value in the smoothed one.
 const SHARE: f64 = 0.15;
+/// A value below this part of the smoothed one takes its place.
+const DROP: f64 = 0.6;
 
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Series {
@@ -21,7 +23,9 @@ impl Series {
         if !ms.is_finite() {
             return;
         }
-        self.smooth = if self.values.is_empty() { ms } else { self.smooth + (ms - self.smooth) * SHARE };
+        // What took much longer once, as a first frame does, is not dragged along.
+        let is_new = self.values.is_empty() || ms < self.smooth * DROP;
+        self.smooth = if is_new { ms } else { self.smooth + (ms - self.smooth) * SHARE };
         self.values.push_back(ms);
         if self.values.len() > LENGTH {
             self.values.pop_front();
@@ -79,6 +83,9 @@ mod tests {
         (0..200).for_each(|_| series.push(20.0));
         assert_eq!(series.values.len(), LENGTH);
         assert!((series.smooth - 20.0).abs() < 1e-3);
+        series.push(1.0);
+        assert_eq!(series.smooth, 1.0);
+        series.push(20.0);
         series.push(f64::NAN);
         assert_eq!((series.largest(), series.values.len()), (20.0, LENGTH));
     }

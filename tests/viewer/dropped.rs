@@ -107,8 +107,7 @@ fn a_mesh_or_picture_that_is_none_says_so_and_keeps_the_picture() {
         assert!(findings.is_stale && said.iter().any(|message| message.contains(wanted)), "{name}: {said:?}");
         assert!(desk.picture() == alone, "{name}");
         desk.core.act(Action::TakeAway(desk.project.path(name)));
-        desk.rest();
-        assert!(desk.core.state.findings.as_ref().is_none_or(|f| !f.is_stale), "{name}");
+        desk.until("what is left", |core| core.state.findings.as_ref().is_none_or(|f| !f.is_stale));
     }
     // A mesh that works takes the place of the one that did not.
     open(&mut desk, "wrong.glb");

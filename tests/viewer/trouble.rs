@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::{Duration, Instant};
 
+use meniscus::graph::value::Value;
 use meniscus::viewer::action::Action;
 use meniscus::viewer::core::Recording;
 
@@ -148,6 +149,33 @@ fn a_folder_that_vanishes_and_comes_back_is_followed() {
     desk.until("the folder to be back", |core| core.state.findings.as_ref().is_none_or(|found| !found.is_stale));
     desk.edit(SHADER, "color * light", "color.yxz * light");
     assert!(desk.picture() != first, "changes are seen again");
+}
+
+#[test]
+fn an_error_stays_until_it_is_mended_whatever_is_done_meanwhile() {
+    if !has_adapter() {
+        return;
+    }
+    let mut desk = Desk::resizable();
+    desk.edit(SHADER, "color * light", "hue * light");
+    let wrong = |desk: &Desk| {
+        let findings = desk.core.state.findings.as_ref().unwrap();
+        assert!(findings.is_stale && findings.counts().0 == 1, "{findings:?}");
+    };
+    wrong(&desk);
+    // As when the messages take room from the picture.
+    desk.core.want_size([160, 80]);
+    desk.until("another size", |core| core.state.viewport == [160, 80]);
+    desk.rest();
+    wrong(&desk);
+    let before = desk.picture();
+    desk.core.act(Action::Set { path: "size".into(), value: Some(Value::Float(3.0)) });
+    desk.rest();
+    assert!(desk.picture() != before, "the last good state can still be changed");
+    wrong(&desk);
+    desk.edit(SHADER, "hue * light", "color * light");
+    desk.rest();
+    assert!(desk.core.state.findings.is_none());
 }
 
 #[cfg(unix)]

@@ -137,7 +137,9 @@ impl Core {
         let drawing_ms = took.as_secs_f64() * 1e3;
         if took >= self.state.patience && self.state.waited_s == 0 {
             let seconds = took.as_secs_f64();
-            self.state.say(format!("drawing took {seconds:.1} s: a shader may loop for long"));
+            self.state.say(format!(
+                "drawing took {seconds:.1} s: the driver compiled something large, or a shader loops for long"
+            ));
         }
         self.state.waited_s = 0;
         self.in_flight = None;

@@ -63,6 +63,13 @@ impl Core {
             self.reload_pending = built.is_some();
         }
         let is_stale = built.is_none();
+        if cause != Cause::Wanted {
+            self.is_load_bad = is_stale;
+        } else if self.is_load_bad && !is_stale {
+            // What is shown now is the last good state in another size or with other values: the files are as
+            // wrong as before.
+            return;
+        }
         self.state.findings = (!diagnostics.is_empty()).then_some(Findings { diagnostics, sources, is_stale });
     }
 

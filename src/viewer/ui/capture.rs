@@ -35,7 +35,7 @@ pub fn draw(ui: &mut Ui, core: &Core, layout: &mut Layout, actions: &mut Vec<Act
     let form = &mut layout.capture;
     let mut is_open = form.is_open;
     let shown = Window::new("Write a picture").open(&mut is_open).resizable(false).collapsible(false);
-    shown.default_width(360.0).show(ui.ctx(), |ui| {
+    shown.default_width(360.0).default_pos([420.0, 44.0]).show(ui.ctx(), |ui| {
         ui.label("file: .png as the screen shows it, .exr linear light");
         ui.add(egui::TextEdit::singleline(&mut form.path).desired_width(f32::INFINITY));
         let [width, height] = core.state.viewport;

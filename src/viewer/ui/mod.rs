@@ -192,3 +192,12 @@ fn side(ui: &mut Ui, core: &Core, layout: &mut Layout, actions: &mut Vec<Action>
         Side::Reloads => reloads::draw(ui, core),
     }
 }
+
+/// The end of a path, which tells most.
+fn ending(text: &str, most: usize) -> String {
+    let count = text.chars().count();
+    if count <= most {
+        return text.to_owned();
+    }
+    format!("..{}", text.chars().skip(count + 2 - most.max(2)).collect::<String>())
+}

@@ -256,7 +256,7 @@ impl Sketch<'_> {
         let inner = rect.shrink2(Vec2::new(9.0 * self.view.zoom, 2.0 * self.view.zoom));
         let painter = self.painter.with_clip_rect(inner.expand(1.0).intersect(self.room));
         let most = (inner.width() / (font.size * 0.5)) as usize;
-        painter.text(inner.left_top(), Align2::LEFT_TOP, ending(name, most), font, color);
+        painter.text(inner.left_top(), Align2::LEFT_TOP, super::ending(name, most), font, color);
         let faint = color.gamma_multiply(0.75);
         let bottom = inner.bottom() - 3.0 * self.view.zoom;
         let at = |x: f32| Pos2::new(x, bottom);
@@ -324,13 +324,4 @@ fn warm(share: f32) -> Color32 {
     let share = share.clamp(0.0, 1.0).sqrt();
     let mix = |a: f32, b: f32| (a + (b - a) * share) as u8;
     Color32::from_rgb(mix(66.0, 196.0), mix(66.0, 112.0), mix(70.0, 34.0))
-}
-
-/// The end of a path, which tells most.
-fn ending(text: &str, most: usize) -> String {
-    let count = text.chars().count();
-    if count <= most {
-        return text.to_owned();
-    }
-    format!("..{}", text.chars().skip(count + 2 - most.max(2)).collect::<String>())
 }

@@ -61,7 +61,9 @@ fn rows(ui: &mut Ui, core: &Core, plan: &Plan, layout: &mut Layout, actions: &mu
                     None => _ = ui.weak("-"),
                 }
                 ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
-                    let text = RichText::new(&pass.path);
+                    // The end of a long path tells most.
+                    let most = (ui.available_width() / 7.0) as usize;
+                    let text = RichText::new(super::ending(&pass.path, most));
                     let text = if is_on { text } else { text.color(theme::FAINT).strikethrough() };
                     let label = ui.add(egui::Label::new(text).truncate().sense(Sense::click()));
                     let label =

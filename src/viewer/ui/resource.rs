@@ -13,6 +13,7 @@ use crate::viewer::look::{self, Look, Seen, SeenContent, SeenTexture};
 #[derive(Default)]
 pub struct View {
     filter: String,
+    is_choosing: bool,
     /// Absent: what shows most.
     channel: Option<Channel>,
     /// Absent: what shows most.
@@ -70,16 +71,25 @@ fn chooser(ui: &mut Ui, core: &Core, plan: &Plan, view: &mut View, actions: &mut
     let mut look = before.clone();
     ui.horizontal_wrapped(|ui| {
         let text = look.as_ref().map_or("resource", |look| look.path.as_str()).to_owned();
-        ComboBox::from_id_salt("resource").selected_text(text).width(170.0).height(420.0).show_ui(ui, |ui| {
-            ui.add(egui::TextEdit::singleline(&mut view.filter).hint_text("filter"));
-            for path in look::paths(plan).into_iter().filter(|path| path.contains(view.filter.trim())) {
-                let is_chosen = look.as_ref().is_some_and(|look| look.path == path);
-                if ui.selectable_label(is_chosen, path).clicked() {
-                    look = Some(Look { path: path.to_owned(), ..Look::default() });
-                    (view.channel, view.range) = (None, None);
+        let chosen =
+            ComboBox::from_id_salt("resource").selected_text(text).width(170.0).height(420.0).show_ui(ui, |ui| {
+                let filter =
+                    ui.add(egui::TextEdit::singleline(&mut view.filter).hint_text("filter, Enter takes the first"));
+                if !view.is_choosing {
+                    view.filter.clear();
+                    filter.request_focus();
                 }
-            }
-        });
+                let mut takes_first = filter.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
+                for path in look::paths(plan).into_iter().filter(|path| path.contains(view.filter.trim())) {
+                    let is_chosen = look.as_ref().is_some_and(|look| look.path == path);
+                    if ui.selectable_label(is_chosen, path).clicked() || std::mem::take(&mut takes_first) {
+                        look = Some(Look { path: path.to_owned(), ..Look::default() });
+                        (view.channel, view.range) = (None, None);
+                        ui.close();
+                    }
+                }
+            });
+        view.is_choosing = chosen.inner.is_some();
         if let Some(look) = &mut look {
             after(ui, plan, look);
             part(ui, plan, look);
