@@ -209,6 +209,13 @@ fn new_makes_a_project_and_never_overwrites() {
 }
 
 #[test]
+fn a_copy_of_a_scene_finds_the_graph_and_not_the_scene_beside_it() {
+    let project = Project::new();
+    project.write("scenes/again.ron", project.text("scenes/dots.ron"));
+    good(project.run(&["check", "--deny-warnings", "scenes/again.ron"]));
+}
+
+#[test]
 fn info_lists_adapters_and_what_graphs_need() {
     let project = Project::empty();
     let info = project.run(&["info"]);

@@ -21,7 +21,7 @@ use crate::plan::model::{InputInfo, MemoryRequest, Policy, Request, Texture};
 use crate::program::{self, Program, missing_file};
 use crate::scene::sequence::Sequence;
 use crate::scene::{self, Camera, Item, MeshEntry, PointerPath, Scene, framing};
-use crate::syntax::Sp;
+use crate::syntax::{Sp, first_word};
 
 /// The graph that turns light into a picture.
 const PRESENT: &str = "parts/present.ron";
@@ -200,10 +200,10 @@ impl Loader<'_> {
         match (&self.job.graph, &scene.graph) {
             (Some(name), _) => self.program(&name.clone(), None),
             (None, Some(name)) => {
-                // A scene may bear the name of its graph, and does not mean itself.
+                // A scene may bear the name of its graph, and means neither itself nor another scene.
                 let folder = scene.path.parent();
-                let is_itself = folder.is_some_and(|f| files::normalize(&f.join(&name.value)) == scene.path);
-                let beside = folder.filter(|_| is_itself).unwrap_or(&scene.path);
+                let is_scene = folder.is_some_and(|f| self.is_scene(&files::normalize(&f.join(&name.value)), scene));
+                let beside = folder.filter(|_| is_scene).unwrap_or(&scene.path);
                 if let Err(missing) = files::find(self.files, Kind::Graph, &name.value, Some(beside)) {
                     self.read.extend(missing.tried.iter().cloned());
                     self.diagnostics.push(missing_file(&name.value, Kind::Graph, &missing, Some(name.span)));
@@ -219,6 +219,11 @@ impl Loader<'_> {
                 None
             }
         }
+    }
+
+    fn is_scene(&self, path: &Path, scene: &Scene) -> bool {
+        let is_one = |bytes: Arc<[u8]>| std::str::from_utf8(&bytes).is_ok_and(|text| first_word(text) == "Scene");
+        path == scene.path || self.files.read(path).is_ok_and(is_one)
     }
 
     fn program(&mut self, name: &str, beside: Option<&Path>) -> Option<Program> {

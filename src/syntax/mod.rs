@@ -14,8 +14,10 @@ mod decode;
 mod lexer;
 mod literal;
 mod parser;
+mod word;
 
 pub use decode::{Decoder, Fields};
+pub use word::first_word;
 
 use std::path::Path;
 

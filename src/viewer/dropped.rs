@@ -5,6 +5,7 @@ use std::path::Path;
 
 use super::state::short;
 use crate::scene::{meshes, particles};
+use crate::syntax::first_word;
 
 /// What a file can be opened as.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -37,24 +38,6 @@ pub fn kind_of(path: &Path) -> Result<Kind, String> {
         false if is_mesh => Ok(Kind::Mesh),
         false if is_picture(path) => Ok(Kind::Picture),
         false => Err(format!("`{shown}` is no scene, graph, particle file, mesh or picture")),
-    }
-}
-
-/// The first word of a text in RON, behind comments.
-fn first_word(text: &str) -> &str {
-    let mut rest = text.trim_start_matches('\u{feff}').trim_start();
-    loop {
-        let end = if rest.starts_with("//") {
-            rest.find('\n')
-        } else if rest.starts_with("/*") {
-            rest.find("*/").map(|at| at + 1)
-        } else if rest.starts_with("#!") {
-            rest.find(']')
-        } else {
-            let end = rest.find(|c: char| !c.is_alphanumeric() && c != '_').unwrap_or(rest.len());
-            return &rest[..end];
-        };
-        rest = end.map_or("", |at| rest[at + 1..].trim_start());
     }
 }
 
@@ -110,13 +93,6 @@ fn numbers<'a>(line: &'a [u8], word: &[u8]) -> Option<impl Iterator<Item = u64> 
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn the_first_word_stands_behind_comments() {
-        assert_eq!(first_word("// a\n/* b */ Graph(x: 1)"), "Graph");
-        assert_eq!(first_word("\u{feff}#![enable(x)]\nScene ("), "Scene");
-        assert_eq!(first_word("// only"), "");
-    }
 
     #[test]
     fn what_has_faces_is_a_mesh() {

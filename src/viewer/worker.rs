@@ -197,6 +197,9 @@ impl Bench {
                     self.watch_files(since);
                 }
                 self.plan(Cause::Wanted, Duration::ZERO, began);
+            } else if plan {
+                // Nothing to plan: who asked is told, and waits no longer.
+                self.send(self.failed(Cause::Wanted, Diagnostics::new(), Sources::new()));
             } else {
                 self.wait();
             }

@@ -176,6 +176,15 @@ fn an_error_stays_until_it_is_mended_whatever_is_done_meanwhile() {
     desk.edit(SHADER, "hue * light", "color * light");
     desk.rest();
     assert!(desk.core.state.findings.is_none());
+
+    // Also where there is nothing at all to draw in another size: nobody waits for it.
+    desk.project.write("wrong.ply", "this is no ply");
+    desk.core.act(Action::Open(desk.project.path("wrong.ply")));
+    desk.until("an error", |core| core.state.findings.as_ref().is_some_and(|found| found.is_stale));
+    desk.core.want_size([160, 120]);
+    std::thread::sleep(Duration::from_millis(150));
+    desk.rest();
+    wrong(&desk);
 }
 
 #[cfg(unix)]

@@ -16,6 +16,9 @@ impl Core {
         self.state.busy = None;
         let Round { cause, planned, read, mut diagnostics, sources, when, noticing, checking, building } = round;
         self.answered = when;
+        if planned.is_none() && diagnostics.is_empty() {
+            return;
+        }
         if let Some(read) = &read {
             self.take_content(read);
         }
