@@ -103,6 +103,7 @@ fn request(roots: Vec<String>) -> Request {
         inputs: [("camera".to_owned(), InputInfo::Camera)].into(),
         capacities: Default::default(),
         roots,
+        stats: false,
         memory: Default::default(),
         features: Features::all(),
         limits: Limits::default(),

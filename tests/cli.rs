@@ -554,6 +554,25 @@ fn pictures_do_not_depend_on_the_policy_and_budgets_are_kept() {
     assert!(plan.contains("the policy is \"smallest\": it was asked for"), "{plan}");
 }
 
+#[test]
+fn bench_shows_statistics() {
+    if !has_adapter() {
+        return;
+    }
+    let declarations = "resources: {\"found\": Counted(capacity: 100), PICTURE}, \
+        stats: {\"full\": \"count(found) / capacity(found)\", \"none\": \"1 / (count(found) - 64)\"},";
+    let passes = "Clear(of: \"found\"), Compute(shader: \"find.wgsl\", groups: 1),";
+    let project = project_of(passes, declarations, &[("find", FIND), ("show", SHOW_FOUND)]);
+    let args = ["bench", "scenes/it.ron", "--frames", "1", "--format"];
+    let json = good(project.run(&[&args[..], &["json"]].concat())).stdout;
+    let json: serde_json::Value = serde_json::from_str(&json).unwrap();
+    assert_eq!(json["statistics"], serde_json::json!({ "full": 0.64, "none": null }));
+    let table = good(project.run(&[&args[..], &["table"]].concat())).stdout;
+    assert!(table.contains("full: 0.64\nnone: no value\n"), "{table}");
+    let plan = good(project.run(&["plan", "graphs/it.ron"])).stdout;
+    assert!(plan.contains("statistics: 2;") && plan.contains("full  count(found) / capacity(found)"), "{plan}");
+}
+
 /// A project with one graph and its shaders.
 fn project_of(passes: &str, declarations: &str, shaders: &[(&str, &str)]) -> Project {
     let project = Project::empty();

@@ -46,7 +46,7 @@ fn whole(block: &str) -> Option<String> {
         None
     } else if starts(&["Graph("]) {
         Some(block.to_owned())
-    } else if starts(&["let:", "resources:", "samplers:", "params:", "inputs:"]) {
+    } else if starts(&["let:", "resources:", "samplers:", "params:", "inputs:", "stats:"]) {
         Some(format!("Graph(\n{block}passes: [], outputs: [],\n)"))
     } else {
         Some(format!("Graph(\npasses: [\n{block}], outputs: [],\n)"))

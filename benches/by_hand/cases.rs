@@ -101,6 +101,7 @@ impl Case {
             inputs: fed.map(|(name, info)| (name.to_owned(), info)).collect(),
             capacities: BTreeMap::new(),
             roots: Vec::new(),
+            stats: false,
             memory: Default::default(),
             features: engine.gpu().features(),
             limits: engine.gpu().limits(),

@@ -15,6 +15,7 @@ pub(super) fn base(program: &Program, device: &Device) -> Request {
         inputs: Default::default(),
         capacities: Default::default(),
         roots: Vec::new(),
+        stats: false,
         memory: Default::default(),
         features: device.features,
         limits: device.limits.clone(),

@@ -28,6 +28,7 @@ mod readback;
 mod report;
 mod run;
 mod screen;
+mod statistics;
 pub mod texel;
 mod timing;
 mod uniform;

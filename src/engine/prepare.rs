@@ -20,6 +20,7 @@ use super::pipeline::{Pipeline, Recipe, RecipeKind, Source, Stage};
 use super::pool::Pool;
 use super::report::{BuildReport, Report};
 use super::run::{StepInfo, Variants};
+use super::statistics::Asked;
 use super::timing::Timing;
 use super::uniform::Uniforms;
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
@@ -77,6 +78,8 @@ pub struct Runner {
     pub(super) runs_all: bool,
     pub(super) loads_are_free: bool,
     pub(super) last: Option<Report>,
+    /// Statistics on their way back.
+    pub(super) asked: Option<Asked>,
     build: BuildReport,
     kept_inputs: Vec<bool>,
 }
@@ -155,6 +158,7 @@ impl Engine {
             inputs_filled: false,
             loads_are_free: self.gpu.info().device_type == wgpu::DeviceType::Cpu,
             last: previous.and_then(|p| carry::last_report(&plan, p)),
+            asked: None,
             build: BuildReport {
                 pipelines_built: compiled.built,
                 pipelines_reused: compiled.reused,

@@ -3,7 +3,7 @@
 
 mod parse;
 
-pub use parse::parse;
+pub use parse::{parse, parse_stat};
 
 use super::value::Value;
 use crate::diagnostic::Span;
@@ -29,6 +29,8 @@ pub enum ExprKind {
     Call(Function, Vec<Expr>),
     /// `(a, b)`, `(a, b, c)` or `(a, b, c, d)`.
     Vector(Vec<Expr>),
+    /// Of statistics: `buffer[3]`, with members of the item behind it.
+    Item(Box<Expr>, Box<Expr>, Vec<String>),
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -54,7 +56,7 @@ pub enum Binary {
     Or,
 }
 
-/// Functions of the expression language. The last five take a name, not a value.
+/// Functions of the expression language. Those from `Size` on take a name, not a value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Function {
     Min,
@@ -71,9 +73,17 @@ pub enum Function {
     Capacity,
     Has,
     Device,
+    /// Of statistics, as are those below.
+    Mean,
+    Sum,
+    Nans,
 }
 
 impl Function {
+    /// What statistics have besides: over all items of a buffer, as `min` and `max` are there too.
+    pub const OF_STATS: &'static [(&'static str, Function)] =
+        &[("mean", Function::Mean), ("sum", Function::Sum), ("nans", Function::Nans)];
+
     pub const ALL: &'static [(&'static str, Function)] = &[
         ("min", Function::Min),
         ("max", Function::Max),
@@ -93,11 +103,12 @@ impl Function {
 
     /// Whether its argument is a name rather than a value.
     pub fn takes_name(self) -> bool {
-        matches!(self, Function::Size | Function::Count | Function::Capacity | Function::Has | Function::Device)
+        use Function::{Capacity, Count, Device, Has, Mean, Nans, Size, Sum};
+        matches!(self, Size | Count | Capacity | Has | Device | Mean | Sum | Nans)
     }
 
     pub fn name(self) -> &'static str {
-        Self::ALL.iter().find(|(_, f)| *f == self).map_or("?", |(name, _)| name)
+        Self::ALL.iter().chain(Self::OF_STATS).find(|(_, f)| *f == self).map_or("?", |(name, _)| name)
     }
 }
 
@@ -108,7 +119,7 @@ impl Expr {
             ExprKind::Literal(_) => {}
             ExprKind::Name(name) => visit(name, self.span),
             ExprKind::Component(e, _) | ExprKind::Unary(_, e) => e.names(visit),
-            ExprKind::Binary(_, a, b) => {
+            ExprKind::Binary(_, a, b) | ExprKind::Item(a, b, _) => {
                 a.names(visit);
                 b.names(visit);
             }

@@ -33,6 +33,16 @@ pub struct Graph {
     pub samplers: Vec<Sampler>,
     pub passes: Vec<Node>,
     pub outputs: Vec<Output>,
+    pub stats: Vec<Stat>,
+}
+
+/// A number over what a frame left in buffers.
+#[derive(Clone, Debug)]
+pub struct Stat {
+    pub name: Name,
+    /// As written.
+    pub text: String,
+    pub expr: Expr,
 }
 
 #[derive(Clone, Debug)]

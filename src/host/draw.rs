@@ -9,6 +9,7 @@ use super::picture::{self, PictureKind, Texels};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::engine::{Frame, Report, Runner, TextureData};
 use crate::plan::model::{ObjectKind, ObjectRef, Plan};
+use crate::plan::stats::Statistic;
 
 /// Frames a second, where nobody says.
 pub(super) const FRAMES_PER_SECOND: f64 = 60.0;
@@ -203,6 +204,28 @@ impl Session {
             channels: crate::format::channels(data.format),
             rgba: data.to_rgba_f32(),
         })
+    }
+
+    /// The statistics of the picture that was drawn last, if the content asked for them. Waits for them.
+    ///
+    /// # Errors
+    /// If nothing was drawn, or the device fails.
+    pub fn statistics(&mut self) -> Result<Vec<Statistic>, Diagnostic> {
+        self.graph.as_mut().ok_or_else(nothing)?.statistics(&self.engine)
+    }
+
+    /// Asks for the statistics of the frame that was submitted last, for [`Session::poll_statistics`].
+    /// They have values if the content says `stats`. Waits for nothing.
+    ///
+    /// # Errors
+    /// If nothing was built, or the device fails.
+    pub fn ask_statistics(&mut self) -> Result<(), Diagnostic> {
+        self.graph.as_mut().ok_or_else(nothing)?.ask_statistics(&self.engine)
+    }
+
+    /// The statistics that were asked for, once, as soon as they are there.
+    pub fn poll_statistics(&mut self) -> Option<Vec<Statistic>> {
+        self.graph.as_mut()?.poll_statistics(&self.engine)
     }
 
     /// Any buffer's bytes, with the header of a counted one.

@@ -62,6 +62,8 @@ pub struct Job {
     pub meshes: Vec<(String, PathBuf)>,
     /// A picture in place of the scene's environment.
     pub environment: Option<PathBuf>,
+    /// Whether statistics are wanted.
+    pub stats: bool,
     /// How memory is shared; absent: by what changes.
     pub policy: Option<Policy>,
     /// Bytes of textures and buffers that may be held.
@@ -88,6 +90,8 @@ pub struct Content {
     pub tracks: Vec<Track>,
     /// What is asked of memory.
     pub memory: MemoryRequest,
+    /// Whether statistics are wanted: passes that only they need run then.
+    pub stats: bool,
 }
 
 /// What loading gave.
@@ -164,6 +168,7 @@ impl Loader<'_> {
             roots,
             tracks,
             memory,
+            stats: self.job.stats,
         })
     }
 
@@ -470,6 +475,7 @@ impl Content {
             inputs: self.inputs.iter().map(|(name, input)| (name.clone(), input.info())).collect(),
             capacities: capacities.clone(),
             roots: self.roots.clone(),
+            stats: self.stats,
             // The budget is looked at once it is known what the rest takes.
             memory: MemoryRequest { budget: None, ..self.memory.clone() },
             features,
@@ -488,6 +494,7 @@ impl Content {
             inputs,
             capacities: BTreeMap::new(),
             roots: Vec::new(),
+            stats: false,
             memory: MemoryRequest::default(),
             features,
             limits,

@@ -21,6 +21,7 @@ mod order;
 pub mod packing;
 pub mod print;
 mod state;
+pub mod stats;
 mod units;
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -74,7 +75,8 @@ fn plan(program: &Program, request: &Request, mode: Mode) -> Result<Plan, Diagno
     unknown_params(&mut lowering);
     lowering.run();
     let outputs = outputs(&mut lowering);
-    let roots = roots(&mut lowering, &outputs, stand_in);
+    let stats = lowering.stats();
+    let mut roots = roots(&mut lowering, &outputs, stand_in);
     if lowering.diagnostics.has_errors() {
         return Err(lowering.diagnostics);
     }
@@ -85,8 +87,15 @@ fn plan(program: &Program, request: &Request, mode: Mode) -> Result<Plan, Diagno
     }
     // One plan says nothing about the others: "unused" is for checks, which compare them.
     let mut warnings = if stand_in { unused(&lowering) } else { Diagnostics::new() };
-    let unread = if stand_in { unread(&lowering, &outputs) } else { Vec::new() };
-    let culled = cull::cull(&mut lowering, &roots);
+    let of_stats: Vec<ObjectRef> = stats.iter().flat_map(|s| &s.probes).map(|probe| probe.object).collect();
+    let unread = if stand_in { unread(&lowering, &outputs, &of_stats) } else { Vec::new() };
+    // A file by itself shows all passes that somebody may ask for.
+    let looked_at: Vec<ObjectId> = of_stats.iter().flat_map(|object| lowering.object_ids(*object)).collect();
+    let needed: Vec<ObjectId> = roots.iter().chain(looked_at.iter().filter(|_| stand_in)).copied().collect();
+    if request.stats {
+        roots.extend(&looked_at);
+    }
+    let culled = cull::cull(&mut lowering, if request.stats { &roots } else { &needed });
     // What only culled passes write is said of these.
     let written = written(&lowering);
     for (object, was_written, diagnostic) in unread {
@@ -106,7 +115,7 @@ fn plan(program: &Program, request: &Request, mode: Mode) -> Result<Plan, Diagno
         return Err(lowering.diagnostics);
     }
     mark_unordered(&mut lowering);
-    let told = Told { culled, order, warnings };
+    let told = Told { culled, order, warnings, stats };
     finish(lowering, outputs, &own, told, units, argument_slots)
 }
 
@@ -138,6 +147,7 @@ struct Told {
     culled: Vec<model::Culled>,
     order: model::Order,
     warnings: Diagnostics,
+    stats: Vec<model::Stat>,
 }
 
 /// Puts the plan together, with lifetimes, memory and needs.
@@ -149,7 +159,7 @@ fn finish(
     units: Vec<model::Unit>,
     argument_slots: u32,
 ) -> Result<Plan, Diagnostics> {
-    let Told { culled, order, mut warnings } = told;
+    let Told { culled, order, mut warnings, stats } = told;
     let mut objects: Vec<Object> = lowering.objects.iter().map(|b| b.object.clone()).collect();
     let runs: Vec<memory::Runs> = lowering.flat.iter().map(|f| (f.pass.unit, f.pass.steps)).collect();
     let touched: Vec<Vec<ObjectId>> = lowering
@@ -189,6 +199,7 @@ fn finish(
         names,
         memory,
         needs,
+        stats,
         params: lowering.params.into_values().collect(),
         structural: lowering.structural,
         arithmetic: lowering.arithmetic,
@@ -320,9 +331,9 @@ fn unused_attributes(lowering: &Lowering<'_>, graph: &Graph) -> Diagnostics {
 }
 
 /// Resources that nothing reads, and whether something writes them.
-fn unread(lowering: &Lowering<'_>, outputs: &[Output]) -> Vec<(ObjectRef, bool, Diagnostic)> {
+fn unread(lowering: &Lowering<'_>, outputs: &[Output], of_stats: &[ObjectRef]) -> Vec<(ObjectRef, bool, Diagnostic)> {
     let mut found = Vec::new();
-    let mut given: BTreeSet<ObjectRef> = outputs.iter().map(|o| o.object).collect();
+    let mut given: BTreeSet<ObjectRef> = outputs.iter().map(|o| o.object).chain(of_stats.iter().copied()).collect();
     // What a part puts out is there for whoever wants it.
     for scope in &lowering.scopes {
         for output in &scope.graph.outputs {

@@ -14,6 +14,7 @@ use wgpu_types::{BufferUsages, Features, TextureUsages};
 pub use self::memory::*;
 pub use self::pass::*;
 pub use self::request::*;
+pub use self::stat::*;
 use crate::diagnostic::{Diagnostics, Span};
 use crate::format::TextureFormat;
 use crate::graph::expr::Expr;
@@ -25,6 +26,7 @@ use crate::shader::reflect::{Module, Type};
 mod memory;
 mod pass;
 mod request;
+mod stat;
 
 /// Index into [`Plan::objects`].
 pub type ObjectId = usize;
@@ -55,6 +57,8 @@ pub struct Plan {
     pub names: BTreeMap<String, ObjectRef>,
     pub memory: Memory,
     pub needs: Needs,
+    /// In the order of the graphs that declare them. They have values only if somebody asked for them.
+    pub stats: Vec<Stat>,
     /// Parameters under their instance paths, with the values that this plan was made for.
     pub params: Vec<Param>,
     /// Instance paths of those on which more hangs than what a uniform holds: sizes, counts, tests,

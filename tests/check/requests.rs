@@ -57,6 +57,7 @@ fn request() -> Request {
         inputs: [("particles".to_owned(), particles)].into(),
         capacities: BTreeMap::new(),
         roots: Vec::new(),
+        stats: false,
         memory: Default::default(),
         features: Features::FLOAT32_BLENDABLE,
         limits: Limits::default(),

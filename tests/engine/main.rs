@@ -10,6 +10,7 @@ mod harness;
 mod lifecycle;
 mod meshes;
 mod shipped;
+mod statistics;
 mod steps;
 mod support;
 mod transfer;
@@ -88,6 +89,8 @@ fn main() -> ExitCode {
         distance::of_a_sphere,
         distance::of_several_bodies,
         everything::files_beside_the_repository_render,
+        statistics::statistics_are_what_buffers_hold,
+        statistics::what_only_statistics_need_runs_when_they_are_asked_for,
         shipped::imai2016,
         shipped::imai2014,
         shipped::iwasaki2006,

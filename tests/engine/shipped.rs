@@ -51,6 +51,7 @@ fn request(engine: &Engine, particles: &[Vec3]) -> Request {
         ]),
         capacities: BTreeMap::new(),
         roots: Vec::new(),
+        stats: false,
         memory: Default::default(),
         features: engine.gpu().features(),
         limits: engine.gpu().limits(),

@@ -34,6 +34,7 @@ pub fn new_plan() -> Plan {
         outputs: Vec::new(),
         names: BTreeMap::new(),
         memory: Memory::default(),
+        stats: Vec::new(),
         needs: Needs::default(),
         params: Vec::new(),
         structural: Default::default(),

@@ -62,6 +62,7 @@ impl Generated {
             inputs: inputs(),
             capacities: Default::default(),
             roots: self.roots.clone(),
+            stats: false,
             memory: Default::default(),
             features,
             limits,

@@ -99,6 +99,7 @@ impl Test {
             inputs: Default::default(),
             capacities: Default::default(),
             roots: Vec::new(),
+            stats: false,
             memory: Default::default(),
             features: Features::all(),
             limits: Limits::default(),

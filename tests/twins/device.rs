@@ -126,6 +126,7 @@ pub fn prepare<'a>(engine: &'a mut Engine, given: &Given<'_>) -> Done<'a> {
         inputs: all.into_iter().filter(|(name, _)| asked(name)).collect(),
         capacities: BTreeMap::new(),
         roots: given.read.iter().map(|name| (*name).to_owned()).collect(),
+        stats: false,
         memory: Default::default(),
         features: engine.gpu().features(),
         limits: engine.gpu().limits(),

@@ -91,6 +91,7 @@ impl Pool {
             ]),
             capacities: BTreeMap::new(),
             roots: vec!["surface".into()],
+            stats: false,
             memory: Default::default(),
             features: engine.gpu().features(),
             limits: engine.gpu().limits(),

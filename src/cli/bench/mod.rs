@@ -13,7 +13,8 @@ use super::session::{Opening, job};
 use crate::diagnostic::{Diagnostics, Sources};
 use crate::engine::{Gpu, Report};
 use crate::files::DiskFiles;
-use crate::host::{Cache, Moment, Session, load};
+use crate::host::{Cache, Content, Moment, Session, load};
+use crate::plan::stats::Statistic;
 use compare::Comparison;
 
 /// Frames before the first that counts: drivers compile late.
@@ -53,6 +54,8 @@ pub(super) struct Measured {
     pub submit_ms: Vec<f64>,
     pub counters: Counters,
     pub memory: Memory,
+    /// Of the picture that was measured, drawn once more with what only statistics need.
+    pub statistics: Vec<Statistic>,
 }
 
 /// A pass's milliseconds on the GPU in each frame.
@@ -108,6 +111,7 @@ fn bench(args: &BenchArgs, sources: &mut Sources) -> Result<Answer, Diagnostics>
             one.frame(counts, &mut notes)?;
         }
     }
+    subject.look(&mut notes)?;
     let measured = subject.end(args.frames);
     let comparison = match (other, before) {
         (Some(other), _) => Some(Comparison::paired(&other.end(args.frames), &measured)),
@@ -119,7 +123,7 @@ fn bench(args: &BenchArgs, sources: &mut Sources) -> Result<Answer, Diagnostics>
 
 /// A scene that is measured.
 struct Subject {
-    content: Option<crate::host::Content>,
+    content: Option<Content>,
     session: Option<Session>,
     index: BTreeMap<String, usize>,
     measured: Measured,
@@ -165,6 +169,19 @@ impl Subject {
             self.measured.add_timed(&timed.reports, &mut self.index);
             self.measured.add_bare(&bare.reports);
         }
+        Ok(())
+    }
+
+    /// Draws the picture once more for its statistics, which what was measured had no part in.
+    fn look(&mut self, notes: &mut Diagnostics) -> Result<(), Diagnostics> {
+        let Some(session) = self.session.as_mut().filter(|s| s.plan().is_some_and(|plan| !plan.stats.is_empty()))
+        else {
+            return Ok(());
+        };
+        let Some(content) = session.content().cloned() else { return Ok(()) };
+        session.build(Content { stats: true, ..content })?;
+        notes.extend(session.draw(Moment::default(), true)?.diagnostics);
+        self.measured.statistics = session.statistics()?;
         Ok(())
     }
 

@@ -45,6 +45,10 @@ pub(super) fn table(m: &Measured, comparison: Option<&Comparison>) -> String {
         "memory: {held} held, policy \"{}\"; of the frame {unshared} without sharing, {lower} in the largest live set",
         m.memory.policy
     );
+    for statistic in &m.statistics {
+        let value = statistic.value.map_or_else(|| "no value".to_owned(), |value| value.to_string());
+        _ = writeln!(text, "{}: {value}", statistic.path);
+    }
     if let Some(comparison) = comparison {
         text.push_str(&comparison.text());
     }

@@ -1,5 +1,6 @@
 //! A measurement as JSON, written and read again; `docs/benchmarks.md` has its fields.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 
 use serde_json::{Value, json};
@@ -37,6 +38,7 @@ pub(super) fn json(m: &Measured, comparison: Option<&Comparison>) -> Value {
             "unshared_bytes": m.memory.unshared_bytes,
             "lower_bound_bytes": m.memory.lower_bound_bytes,
         },
+        "statistics": m.statistics.iter().map(|s| (s.path.clone(), json!(s.value))).collect::<BTreeMap<_, _>>(),
     });
     if let Some(comparison) = comparison {
         value["comparison"] = comparison.json();

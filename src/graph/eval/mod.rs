@@ -107,6 +107,8 @@ pub fn fold(expr: &Expr, scope: &dyn Scope) -> Result<Expr, Diagnostic> {
                 None => ExprKind::Call(*function, args),
             }
         }
+        // Statistics replace these before.
+        ExprKind::Item(..) => return Err(wrong("items of buffers cannot be read here".into(), expr.span, &[])),
         ExprKind::Vector(parts) => {
             let parts = fold_all(parts, scope)?;
             match literals(&parts) {
@@ -137,6 +139,7 @@ pub fn eval_live(expr: &Expr, live: &dyn Fn(&str) -> Option<Value>) -> Option<Va
             }
         }
         ExprKind::Call(function, _) if function.takes_name() => None,
+        ExprKind::Item(..) => None,
         ExprKind::Call(function, args) => {
             let values: Option<Vec<Value>> = args.iter().map(|arg| eval_live(arg, live)).collect();
             ops::call(*function, &values?).ok()

@@ -178,9 +178,14 @@ pub(super) fn call(function: Function, args: &[Value]) -> Made {
         }
         Function::NextPow2 => each(first, next_pow2),
         Function::MipCount => mip_count(first),
-        Function::Size | Function::Count | Function::Capacity | Function::Has | Function::Device => {
-            Err(format!("`{name}` takes a name, not a value"))
-        }
+        Function::Size
+        | Function::Count
+        | Function::Capacity
+        | Function::Has
+        | Function::Device
+        | Function::Mean
+        | Function::Sum
+        | Function::Nans => Err(format!("`{name}` takes a name, not a value")),
     }
 }
 

@@ -17,13 +17,25 @@ const MAX_TOKENS: usize = 1024;
 /// # Errors
 /// `expression-syntax`, pointing at the first mistake.
 pub fn parse(text: &str, at: Span, exact: bool) -> Result<Expr, Diagnostic> {
-    let place = Place { at, exact };
+    parse_as(text, Place { at, exact, is_stat: false })
+}
+
+/// The same for a statistic, which may also read items of buffers, and sum over them.
+///
+/// # Errors
+/// As [`parse`].
+pub fn parse_stat(text: &str, at: Span, exact: bool) -> Result<Expr, Diagnostic> {
+    parse_as(text, Place { at, exact, is_stat: true })
+}
+
+fn parse_as(text: &str, place: Place) -> Result<Expr, Diagnostic> {
+    let at = place.at;
     let tokens = tokens(text, place)?;
     if tokens.len() > MAX_TOKENS {
         let message = format!("an expression has more than {MAX_TOKENS} words and signs");
         return Err(fault(message, at, "too long").hint("split it with names under `let`"));
     }
-    let mut parser = Parser { tokens: &tokens, at: 0, depth: 0 };
+    let mut parser = Parser { tokens: &tokens, at: 0, depth: 0, is_stat: place.is_stat };
     if parser.peek() == &Token::End {
         return Err(fault("an expression is empty", at, "a value is expected here"));
     }
@@ -39,6 +51,8 @@ pub fn parse(text: &str, at: Span, exact: bool) -> Result<Expr, Diagnostic> {
 struct Place {
     at: Span,
     exact: bool,
+    /// Of a statistic.
+    is_stat: bool,
 }
 
 impl Place {
@@ -124,6 +138,9 @@ fn token(text: &str, at: usize, c: char, place: Place) -> Result<(Token, usize),
         let length = path_length(rest);
         return Ok((Token::Name(rest[..length].into()), length));
     }
+    if let Some(sign) = ["[", "]"].into_iter().find(|sign| place.is_stat && rest.starts_with(sign)) {
+        return Ok((Token::Sign(sign), 1));
+    }
     if let Some((habit, hint)) =
         HABITS.iter().find(|(h, _)| rest.starts_with(h) && !rest.starts_with("==") && !rest.starts_with("!="))
     {
@@ -187,6 +204,7 @@ struct Parser<'a> {
     tokens: &'a [(Token, Span)],
     at: usize,
     depth: usize,
+    is_stat: bool,
 }
 
 type Parsed = Result<Expr, Diagnostic>;
@@ -330,6 +348,9 @@ impl Parser<'_> {
 
     fn postfix(&mut self) -> Parsed {
         let mut expr = self.primary()?;
+        if self.eat("[") {
+            return self.item(expr);
+        }
         while self.eat(".") {
             let component = match self.peek() {
                 Token::Name(name) => ["x", "y", "z", "w"].iter().find(|c| *c == name).and_then(|c| c.chars().next()),
@@ -340,6 +361,27 @@ impl Parser<'_> {
             expr = Expr { kind: ExprKind::Component(Box::new(expr), component), span };
         }
         Ok(expr)
+    }
+
+    /// What stands behind `buffer[`.
+    fn item(&mut self, of: Expr) -> Parsed {
+        if !matches!(of.kind, ExprKind::Name(_)) {
+            return Err(fault("only buffers have items", of.span, "the name of a buffer is expected here"));
+        }
+        let index = self.deeper(Self::or)?;
+        let mut end = self.span();
+        if !self.eat("]") {
+            return Err(self.unexpected("`]`"));
+        }
+        let mut members = Vec::new();
+        while self.eat(".") {
+            // The words behind one dot are one token.
+            let Token::Name(name) = self.peek().clone() else { return Err(self.unexpected("a member's name")) };
+            members.extend(name.split('.').map(str::to_owned));
+            end = self.advance();
+        }
+        let span = of.span.to(end);
+        Ok(Expr { kind: ExprKind::Item(Box::new(of), Box::new(index), members), span })
     }
 
     fn primary(&mut self) -> Parsed {
@@ -400,8 +442,10 @@ impl Parser<'_> {
         let word = self.advance();
         let (args, list) = self.list()?;
         let span = word.to(list);
-        let Some((_, function)) = Function::ALL.iter().find(|(known, _)| *known == name) else {
-            let known: Vec<&str> = Function::ALL.iter().map(|(known, _)| *known).collect();
+        let of_stats = if self.is_stat { Function::OF_STATS } else { &[] };
+        let all = || Function::ALL.iter().chain(of_stats);
+        let Some((_, function)) = all().find(|(known, _)| *known == name) else {
+            let known: Vec<&str> = all().map(|(known, _)| *known).collect();
             return Err(fault(format!("there is no function `{name}`"), word, "unknown function")
                 .nearest(name, known.iter().copied())
                 .hint(format!("the functions are {}", known.join(", "))));

@@ -17,11 +17,13 @@ pub use names::{SAMPLERS, SCALARS};
 use std::path::Path;
 
 use self::values::{Named, named};
-use super::model::{Graph, Let, Output};
+use super::expr;
+use super::model::{Graph, Let, Output, Stat};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics, FileId, Sources};
 use crate::syntax::{self, Decoder, Fields, Kind, Node};
 
-const FIELDS: &[&str] = &["about", "inputs", "params", "let", "resources", "state", "samplers", "passes", "outputs"];
+const FIELDS: &[&str] =
+    &["about", "inputs", "params", "let", "resources", "state", "samplers", "passes", "outputs", "stats"];
 
 /// Reads a file of `sources` as a graph. With errors in the diagnostics the graph is what could
 /// be made out, if anything; it is not fit for planning.
@@ -40,16 +42,7 @@ fn graph(d: &mut Decoder<'_>, node: &Node, file: FileId, path: &Path) -> Option<
         d.push(Diagnostic::error(Code::WRONG_VALUE, message).at(node.head(), "`Graph(` is expected here"));
         return None;
     };
-    let known = if tagged.has("stats") { [FIELDS, &["stats"]].concat() } else { FIELDS.to_vec() };
-    let fields = d.body_fields(tagged, "`Graph`", &known)?;
-    if let Some((name, _)) = fields.entry("stats") {
-        let message = "statistics are not supported yet";
-        d.push(
-            Diagnostic::error(Code::UNKNOWN_FIELD, message)
-                .at(name.span, "not supported yet")
-                .hint("leave `stats` out"),
-        );
-    }
+    let fields = d.body_fields(tagged, "`Graph`", FIELDS)?;
     let mut resources = section(d, &fields, "resources", |d, e| resources::resource(d, e, false));
     resources.extend(section(d, &fields, "state", |d, e| resources::resource(d, e, true)));
     let passes = fields.require(d, "passes").map(|node| passes::list(d, node, "`passes`")).unwrap_or_default();
@@ -65,6 +58,7 @@ fn graph(d: &mut Decoder<'_>, node: &Node, file: FileId, path: &Path) -> Option<
         samplers: section(d, &fields, "samplers", resources::sampler),
         passes,
         outputs: fields.get("outputs").map(|node| outputs(d, node)).unwrap_or_default(),
+        stats: section(d, &fields, "stats", stat),
     };
     if fields.get("outputs").is_none() {
         _ = fields.require(d, "outputs");
@@ -87,6 +81,20 @@ fn section<T>(
 fn binding(d: &mut Decoder<'_>, entry: &Named<'_>) -> Option<Let> {
     let expr = values::expr(d, entry.node, &format!("`{}`", entry.name.value))?;
     Some(Let { name: entry.name.clone(), expr })
+}
+
+fn stat(d: &mut Decoder<'_>, entry: &Named<'_>) -> Option<Stat> {
+    let Kind::Str(text) = &entry.node.kind else {
+        d.wrong(entry.node, &format!("the statistic `{}`", entry.name.value), "an expression in a string");
+        return None;
+    };
+    match expr::parse_stat(&text.value, text.inner, text.exact) {
+        Ok(expr) => Some(Stat { name: entry.name.clone(), text: text.value.clone(), expr }),
+        Err(diagnostic) => {
+            d.push(diagnostic);
+            None
+        }
+    }
 }
 
 /// A list of names, or a map from the outer names.

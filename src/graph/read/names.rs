@@ -82,6 +82,9 @@ pub(super) fn check(d: &mut Decoder<'_>, graph: &Graph) {
             check_name(d, &output.name, "an output");
         }
     }
+    for stat in &graph.stats {
+        check_name(d, &stat.name, "a statistic");
+    }
     walk(d, &graph.passes, &mut taken, &[]);
 }
 

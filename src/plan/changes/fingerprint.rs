@@ -120,6 +120,7 @@ fn expression(expr: &Expr, out: &mut String) {
         ExprKind::Unary(op, inner) => list(op, &[inner]),
         ExprKind::Binary(op, a, b) => list(op, &[a, b]),
         ExprKind::Call(function, parts) => list(function, &parts.iter().collect::<Vec<_>>()),
+        ExprKind::Item(of, index, members) => list(members, &[of, index]),
         ExprKind::Vector(parts) => list(&"vector", &parts.iter().collect::<Vec<_>>()),
     }
 }

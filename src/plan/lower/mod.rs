@@ -14,6 +14,7 @@ mod meshes;
 mod names;
 mod nodes;
 mod scalars;
+mod stats;
 mod steps;
 mod swaps;
 mod targets;

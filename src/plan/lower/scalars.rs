@@ -21,6 +21,10 @@ struct Names<'l, 'p> {
 
 impl eval::Scope for Names<'_, '_> {
     fn name(&self, path: &str, span: Span) -> std::result::Result<Lookup, Diagnostic> {
+        if path.starts_with('#') {
+            // What statistics read of buffers.
+            return Ok(Lookup::Live(Expr { kind: ExprKind::Name(path.to_owned()), span }));
+        }
         if let Some(part) = self.component(path, span) {
             return part;
         }

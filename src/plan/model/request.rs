@@ -20,6 +20,8 @@ pub struct Request {
     pub capacities: BTreeMap<String, u64>,
     /// Instance paths that somebody asks for besides the first output.
     pub roots: Vec<String>,
+    /// Whether statistics are asked for, so that what they read is made and kept.
+    pub stats: bool,
     pub memory: MemoryRequest,
     pub features: Features,
     pub limits: Limits,
@@ -35,6 +37,7 @@ impl Request {
             inputs: BTreeMap::new(),
             capacities: BTreeMap::new(),
             roots: Vec::new(),
+            stats: false,
             memory: MemoryRequest::default(),
             features,
             limits,

@@ -86,6 +86,8 @@ fn value(plan: &Plan) -> Json {
             "largest_live_set_bytes": plan.memory.lower_bound,
             "largest_live_set_at": plan.memory.largest_at,
         },
+        "statistics": plan.stats.iter().map(|s| json!({ "path": s.path, "expression": s.text, "missing": s.missing }))
+            .collect::<Vec<_>>(),
         "argument_slots": plan.argument_slots,
         "needs": {
             "features": feature_names(plan.needs.features),

@@ -24,6 +24,7 @@ pub fn text(plan: &Plan) -> String {
     units(plan, &mut out);
     steps(plan, &mut out);
     resources(plan, &mut out);
+    stats(plan, &mut out);
     memory(plan, &mut out);
     needs(plan, &mut out);
     params(plan, &mut out);
@@ -271,6 +272,20 @@ fn notes(plan: &Plan, id: ObjectId, shared: Option<&String>) -> Vec<String> {
     }
     notes.extend(shared.map(|label| format!("shares {label}")));
     notes
+}
+
+fn stats(plan: &Plan, out: &mut String) {
+    if plan.stats.is_empty() {
+        return;
+    }
+    _ = writeln!(out, "statistics: {}; passes that only they need run when somebody asks", plan.stats.len());
+    let width = plan.stats.iter().map(|stat| stat.path.len()).max().unwrap_or(0).min(WIDEST);
+    for stat in &plan.stats {
+        let missing =
+            stat.missing.as_ref().map_or(String::new(), |name| format!("  (no value: nothing writes {name})"));
+        _ = writeln!(out, "  {:width$}  {}{missing}", stat.path, stat.text);
+    }
+    out.push('\n');
 }
 
 fn memory(plan: &Plan, out: &mut String) {
