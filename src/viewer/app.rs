@@ -85,6 +85,11 @@ impl ApplicationHandler<News> for App {
         let Some(open) = &mut self.open else { return };
         match event {
             WindowEvent::CloseRequested => return self.end(events, Ok(())),
+            // By somebody else: nothing may be asked of it any more.
+            WindowEvent::Destroyed => {
+                self.open = None;
+                return self.end(events, Ok(()));
+            }
             WindowEvent::RedrawRequested => {
                 let began = Instant::now();
                 open.redraw();
