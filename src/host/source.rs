@@ -6,10 +6,14 @@ use std::sync::Arc;
 use crate::diagnostic::{Code, Diagnostic, Diagnostics, Sources};
 use crate::files::{Files, LIBRARY, library_file};
 use crate::scene::sequence::Pattern;
-use crate::scene::{self, Scene, particles};
+use crate::scene::{self, Item, MeshEntry, Scene, particles};
+use crate::syntax::Sp;
 
 /// The scene for particles that came without one, in the library that the program carries.
 const DEFAULT_SCENE: &str = "scenes/default.ron";
+
+/// The input that a mesh file by itself feeds: so the shipped graphs call theirs.
+const MESHES: &str = "meshes";
 
 /// A scene, perhaps the default one for a particle file that was given in its place.
 #[derive(Debug)]
@@ -38,10 +42,27 @@ pub(super) fn read(
         let bytes = named(files, path).map_err(|error| diagnostics.push(error)).ok()?;
         let scene = scene::read(path, &bytes, sources, diagnostics)?;
         Some(Source { scene, is_particles: false })
+    } else if is_mesh(path) {
+        let mut scene = default_scene(sources, diagnostics)?;
+        stand(&mut scene, path);
+        Some(Source { scene, is_particles: false })
     } else {
         let scene = default_scene(sources, diagnostics)?;
         Some(Source { scene, is_particles: true })
     }
+}
+
+/// Whether a path names a mesh file. What may also be particles counts as those.
+fn is_mesh(path: &Path) -> bool {
+    scene::meshes::known_extension(path) && !particles::known_extension(path)
+}
+
+/// Puts a mesh file into a scene that has no other.
+fn stand(scene: &mut Scene, path: &Path) {
+    let said = |value: String| Sp { value, span: scene.span };
+    let file = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
+    let value = vec![MeshEntry::of(said(file.display().to_string()))];
+    scene.meshes = vec![Item { name: said(MESHES.into()), value, span: scene.span }];
 }
 
 /// The pattern that a path of the command line is: a file that bears the `#` itself is one file.
@@ -59,7 +80,7 @@ pub fn renderable(files: &dyn Files, path: &Path) -> Result<(), Diagnostic> {
         // Says why: missing, a folder, unreadable.
         named(files, path)?;
     }
-    if is_scene(path) || particles::known_extension(path) {
+    if is_scene(path) || particles::known_extension(path) || is_mesh(path) {
         return Ok(());
     }
     let message = format!("`{}` is neither a scene (.ron) nor a particle file", path.display());

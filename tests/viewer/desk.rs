@@ -46,6 +46,14 @@ impl Desk {
         Self::sized(project, Some([160, 120]))
     }
 
+    /// A window with nothing in it.
+    pub fn empty() -> Self {
+        let gpu = Gpu::open(&GpuOptions::default()).unwrap();
+        let mut core = Core::new(gpu, None, || {}).unwrap();
+        core.want_size([160, 120]);
+        Self { core, project: Project::empty(), shots: 0 }
+    }
+
     fn sized(project: Project, size: Option<[u32; 2]>) -> Self {
         let gpu = Gpu::open(&GpuOptions::default()).unwrap();
         let job = Job { source: project.path(SCENE), size, ..Job::default() };

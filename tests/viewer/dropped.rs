@@ -88,6 +88,21 @@ fn a_mesh_becomes_a_body_and_a_picture_the_environment() {
 }
 
 #[test]
+fn a_mesh_opens_by_itself_where_nothing_is_open() {
+    if !has_adapter() {
+        return;
+    }
+    let mut desk = Desk::empty();
+    desk.project.write("wall.obj", WALL);
+    desk.core.act(Action::Open(desk.project.path("wall.obj")));
+    desk.until("a picture", |core| core.state.frames > 0);
+    desk.rest();
+    assert!(desk.core.state.findings.as_ref().is_none_or(|found| !found.is_stale), "{:?}", desk.core.state.findings);
+    let bounds = desk.core.state.bounds.unwrap();
+    assert_eq!(bounds.map(|end| end.to_array()), [[-2.0, -1.0, -1.0], [2.0, 2.0, -1.0]], "F frames it");
+}
+
+#[test]
 fn a_mesh_or_picture_that_is_none_says_so_and_keeps_the_picture() {
     if !has_adapter() {
         return;

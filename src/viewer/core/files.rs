@@ -39,9 +39,7 @@ impl Core {
             (Ok(Kind::Graph), None) => {
                 self.state.say("a graph draws something: drop a scene or particles first, then the graph");
             }
-            (Ok(Kind::Mesh), None) => {
-                self.state.say("a body stands in a scene: drop a scene or particles first, then the mesh");
-            }
+            (Ok(Kind::Mesh), None) => self.open(Job { source: path, size, ..Job::default() }),
             (Ok(Kind::Picture), None) => {
                 self.state.say("a picture is an environment: drop a scene or particles first, then the picture");
             }

@@ -12,7 +12,7 @@ pub fn draw(ui: &mut Ui, layout: &mut Layout, actions: &mut Vec<Action>) {
     ui.vertical_centered(|ui| {
         ui.heading("Drop a file here");
         ui.add_space(4.0);
-        ui.label("a scene (.ron) or particles (.vtk, .vtu, .vtp, .ply, .bgeo, .xyz, .csv, .json, .pdb, .ptc)");
+        ui.label("a scene (.ron), a mesh (.gltf, .glb, .obj) or particles (.vtk, .vtu, .vtp, .ply, .bgeo, .xyz, .csv, .json, .pdb, .ptc)");
         ui.weak("then, onto what is open: a graph (.ron), a mesh (.gltf, .glb, .obj), an environment (.hdr, .exr, .png, .jpg)");
         ui.add_space(24.0);
         let scenes = layout.scenes.get_or_insert_with(scenes);
