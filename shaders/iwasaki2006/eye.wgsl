@@ -2,6 +2,7 @@
 // reach. Not in the paper, whose camera stays outside.
 #import "lib/camera.wgsl"
 #import "lib/kernel.wgsl"
+#import "lib/mirrors.wgsl"
 #import "lib/packed.wgsl"
 
 const THREADS = 256u;
@@ -33,8 +34,13 @@ fn look(@builtin(local_invocation_index) lane: u32) {
     let end = water_cluster_start[cluster_at(p.y + params.water_reach_m) + 1u];
     var sum = 0.0;
     for (var i = water_cluster_start[cluster_at(p.y - params.water_reach_m)] + lane; i < end; i += THREADS) {
-        let away = (unpack3(water_sorted[i]) - p) / params.water_reach_m;
-        sum += bracket(dot(away, away));
+        let center = unpack3(water_sorted[i]);
+        let own = (center - p) / params.water_reach_m;
+        let image = (mirrored(center) - p) / params.water_reach_m;
+        for (var k = 0u; k < 8u; k++) {
+            let away = select(own, image, (vec3u(k) >> vec3u(0u, 1u, 2u) & vec3u(1u)) == vec3u(1u));
+            sum += bracket(dot(away, away));
+        }
     }
     partial[lane] = sum;
     workgroupBarrier();

@@ -5,8 +5,18 @@
 #import "lib/pool.wgsl"
 #import "lib/slices.wgsl"
 
+/// The box in which particles lie.
+struct Box {
+    low: vec3f,
+    high: vec3f,
+}
+
+var<uniform> box_of: Box;
 var water_z: texture_2d<f32>;
 var water_normal: texture_2d<f32>;
+// Where rays leave again.
+var back_z: texture_2d<f32>;
+var back_normal: texture_2d<f32>;
 var dry_color: texture_2d<f32>;
 var dry_z: texture_2d<f32>;
 var slices: texture_2d_array<f32>;
@@ -54,6 +64,13 @@ fn met(p: vec3f, direction: vec3f, hit: PoolHit, footprint_m: f32) -> vec3f {
     return color.rgb + (1.0 - color.a) * sky;
 }
 
+/// Metres that a ray goes in the box where the water is.
+fn in_box_m(p: vec3f, direction: vec3f) -> f32 {
+    let towards = select(box_of.low, box_of.high, direction > vec3f(0.0));
+    let t = (towards - p) / select(direction, vec3f(1.0e-6), abs(direction) < vec3f(1.0e-6));
+    return max(min(t.x, min(t.y, t.z)), 0.0);
+}
+
 /// The same under water: meshes too, and what the water takes on the way.
 fn met_in_water(p: vec3f, direction: vec3f, footprint_m: f32) -> vec3f {
     let hit = pool_hit(p, direction);
@@ -61,17 +78,65 @@ fn met_in_water(p: vec3f, direction: vec3f, footprint_m: f32) -> vec3f {
     if mesh.w > 0.0 {
         return mesh.rgb * transmitted(plane_stack.absorption, mesh.w);
     }
-    return met(p, direction, hit, footprint_m) * transmitted(plane_stack.absorption, min(hit.t, 100.0));
+    // What misses the pool has left the water somewhere.
+    let way = select(hit.t, min(hit.t, in_box_m(p, direction)), hit.kind == NOTHING || direction.y > 0.0);
+    return met(p, direction, hit, footprint_m) * transmitted(plane_stack.absorption, way);
+}
+
+/// Where a ray leaves again what it has entered: metres, and the outward normal; 0 where it does not.
+fn exit(p: vec3f, direction: vec3f, pixel: vec2f) -> vec4f {
+    var found = vec4f(0.0);
+    var at = pixel;
+    for (var k = 0; k < 3; k++) {
+        let texel = clamp(vec2i(at), vec2i(0), vec2i(camera.viewport) - 1);
+        let z = textureLoad(back_z, texel, 0).x;
+        if z == 0.0 {
+            break;
+        }
+        // Towards the plane that the pixel shows.
+        let q = (camera.world_from_view * vec4f(eye_from_pixel(at, z), 1.0)).xyz;
+        let normal = world_from_eye_vector(textureLoad(back_normal, texel, 0).xyz);
+        let t = dot(q - p, normal) / max(dot(direction, normal), 0.2);
+        if t <= 0.0 {
+            break;
+        }
+        found = vec4f(normal, min(t, 2.0 * distance(p, q)));
+        at = pixel_from_eye(eye_from_world_point(p + found.w * direction));
+    }
+    return found;
+}
+
+/// Light that comes against a ray from where it left: of what is dry there, or of the pool's water after it went in again.
+fn met_outside(p: vec3f, direction: vec3f, footprint: f32) -> vec3f {
+    let hit = pool_hit(p, direction);
+    if hit.kind != NOTHING && direction.y < 0.0 && under_water_m(p + hit.t * direction) > 0.0 {
+        return met_in_water(p, bend_in(direction, vec3f(0.0, 1.0, 0.0), light_screen.ior).direction, footprint);
+    }
+    return met(p, direction, hit, footprint);
 }
 
 /// Light through a point of the surface, seen from outside; `footprint` is a pixel's width there.
-fn from_outside(p: vec3f, view: vec3f, facing: vec3f, footprint: f32) -> vec3f {
+fn from_outside(p: vec3f, view: vec3f, facing: vec3f, footprint: f32, pixel: vec2f) -> vec3f {
     let reflectance = fresnel(clamp(-dot(view, facing), 0.0, 1.0), light_screen.ior);
     let mirrored = reflect(view, facing);
     let reflected = met(p, mirrored, pool_hit(p, mirrored), footprint);
-    let inner = bend_in(view, facing, light_screen.ior).direction;
-    let refracted = met_in_water(p, inner, footprint);
-    return mix(refracted, reflected, reflectance);
+    var inner = bend_in(view, facing, light_screen.ior).direction;
+    var start = p;
+    var share = vec3f(1.0);
+    var light = reflectance * reflected;
+    let leaves = exit(p, inner, pixel);
+    if leaves.w > 0.0 {
+        start += leaves.w * inner;
+        share = transmitted(plane_stack.absorption, leaves.w);
+        let back = -leaves.xyz;
+        let out = bend_out(inner, back, light_screen.ior);
+        if out.reflectance < 1.0 {
+            light += (1.0 - reflectance) * (1.0 - out.reflectance) * share * met_outside(start, out.direction, footprint);
+        }
+        share *= out.reflectance;
+        inner = reflect(inner, back);
+    }
+    return light + (1.0 - reflectance) * share * met_in_water(start, inner, footprint);
 }
 
 /// The same from inside, where the surface may reflect everything; the way from the eye to it absorbs too.
@@ -107,5 +172,5 @@ fn seen(@builtin(position) position: vec4f) -> @location(0) vec4f {
     if inside {
         return vec4f(from_inside(p, view, facing, footprint, length(p_in_view)), 1.0);
     }
-    return vec4f(from_outside(p, view, facing, footprint), 1.0);
+    return vec4f(from_outside(p, view, facing, footprint, position.xy), 1.0);
 }

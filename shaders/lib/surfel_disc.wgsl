@@ -2,6 +2,9 @@
 #import "lib/camera.wgsl"
 #import "lib/surfel.wgsl"
 
+/// Draw what shows its other side: where light leaves again.
+override back: bool = false;
+
 /// 1 where the eye is outside what the surfels enclose, -1 inside.
 var<storage, read> eye: array<f32>;
 
@@ -32,7 +35,8 @@ fn seen_along(p: vec3f) -> vec3f {
     return normalize(p - camera.position);
 }
 
-/// Whether a surfel shows the side on which the eye is.
+/// Whether a surfel shows the side on which the eye is, or the other one if that is asked for.
 fn surfel_faces(surfel: Surfel) -> bool {
-    return eye[0] * dot(surfel.normal, seen_along(surfel.position)) < 0.0;
+    let towards = eye[0] * dot(surfel.normal, seen_along(surfel.position));
+    return select(towards, -towards, back) < 0.0;
 }

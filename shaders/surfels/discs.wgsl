@@ -1,6 +1,7 @@
 // Each particle's discs of intersection with four grid planes, added up in four channels (Iwasaki et al. 2006, section
 // 4.2 and equation 1): `in_atlas` for all slabs at once, `in_slab` for one. Each slab has a tile of the target.
 #import "lib/kernel.wgsl"
+#import "lib/mirrors.wgsl"
 #import "lib/packed.wgsl"
 
 struct Params {
@@ -27,8 +28,11 @@ struct Disc {
     // The particle's place among the grid points, and the pixel at which these begin: apart, since a sum would be rounded.
     @location(0) @interpolate(flat) middle: vec2f,
     @location(2) @interpolate(flat) tile_corner: vec2f,
-    // Squared distances of the four planes, in effective radii.
+    // Squared distances of the four planes, in effective radii, and those from its image below the floor.
     @location(1) @interpolate(flat) away: vec4f,
+    @location(3) @interpolate(flat) away_below: vec4f,
+    // The place of its images behind walls.
+    @location(4) @interpolate(flat) image: vec2f,
 }
 
 const TABLE = 1u;
@@ -41,27 +45,40 @@ var<storage, read> slab_first: array<u32>;
 var<storage, read> cluster_start: array<u32>;
 var lookup: texture_2d<f32>;
 
-/// A quad around the particle's largest disc among a slab's planes, in the slab's tile; no area where none is met. The
-/// grid reaches beyond all discs, so that none leaves its tile.
+fn squared(x: vec4f) -> vec4f {
+    return x * x;
+}
+
+/// A quad around the particle's largest disc among a slab's planes and those of its images, in the slab's tile; no area
+/// where none is met.
 fn quad(p_m: vec3f, slab_index: u32, corner: u32) -> Disc {
     let tile = slab_index % params.held;
     let edges = vec2f(f32(params.columns), f32(params.rows));
     let tile_corner = edges * vec2f(vec2u(tile % params.tiles, tile / params.tiles));
     let size = edges * vec2f(vec2u(params.tiles, (params.held + params.tiles - 1u) / params.tiles));
     let p = (p_m - params.origin) / params.spacing;
+    let image = (mirrored(p_m) - params.origin) / params.spacing;
     let reach = params.reach_m / params.spacing;
     let planes = 4.0 * f32(slab_index) + vec4f(0.0, 1.0, 2.0, 3.0);
-    let away = (planes - p.y) / reach;
     var out: Disc;
-    out.away = away * away;
-    let nearest = min(min(out.away.x, out.away.y), min(out.away.z, out.away.w));
+    out.away = squared((planes - p.y) / reach);
+    // Below the floor an image counts where its particle does too, so that both layouts see the same ones.
+    out.away_below = select(squared((planes - image.y) / reach), vec4f(1.0), out.away >= vec4f(1.0));
+    let each = min(out.away, out.away_below);
+    let nearest = min(min(each.x, each.y), min(each.z, each.w));
     // Half a cell more, for rounding.
     let radius = select(reach * sqrt(max(1.0 - nearest, 0.0)) + 0.5, 0.0, nearest >= 1.0);
-    let side = vec2f(f32(corner & 1u), f32(corner >> 1u)) * 2.0 - 1.0;
     // Grid point i lies in the middle of pixel i.
     out.middle = p.xz;
+    out.image = image.xz;
     out.tile_corner = tile_corner;
-    let ndc = (tile_corner + p.xz + 0.5 + radius * side) / size * 2.0 - 1.0;
+    let has_image = image.xz < vec2f(0.5 * NO_IMAGE);
+    let low = select(p.xz, min(p.xz, image.xz), has_image) - radius;
+    let high = select(p.xz, max(p.xz, image.xz), has_image) + radius;
+    let side = vec2<bool>((corner & 1u) == 1u, (corner >> 1u) == 1u);
+    // Images may reach beyond the grid, whose tile none leaves.
+    let at = clamp(select(low, high, side) + 0.5, vec2f(0.0), edges);
+    let ndc = (tile_corner + at) / size * 2.0 - 1.0;
     out.clip = vec4f(ndc.x, -ndc.y, 0.5, 1.0);
     return out;
 }
@@ -97,12 +114,37 @@ fn looked_up(a_2: f32) -> f32 {
     return mix(low, high, at - f32(i));
 }
 
+/// Equation 1 on four planes, by squared distances.
+fn bracket_4(a_2: vec4f) -> vec4f {
+    if params.kernel == TABLE {
+        return vec4f(looked_up(a_2.x), looked_up(a_2.y), looked_up(a_2.z), looked_up(a_2.w));
+    }
+    return vec4f(bracket(a_2.x), bracket(a_2.y), bracket(a_2.z), bracket(a_2.w));
+}
+
+/// The sum over a particle and its images behind walls, at one height.
+fn with_images(away: vec4f, own: vec2f, image: vec2f) -> vec4f {
+    var sum = bracket_4(away + own.x + own.y);
+    if image.x < 1.0 {
+        sum += bracket_4(away + image.x + own.y);
+    }
+    if image.y < 1.0 {
+        sum += bracket_4(away + own.x + image.y);
+        if image.x < 1.0 {
+            sum += bracket_4(away + image.x + image.y);
+        }
+    }
+    return sum;
+}
+
 @fragment
 fn density(in: Disc) -> @location(0) vec4f {
-    let beside = (floor(in.clip.xy) - in.tile_corner - in.middle) * (params.spacing / params.reach_m);
-    let a_2 = in.away + dot(beside, beside);
-    if params.kernel == TABLE {
-        return params.peak * vec4f(looked_up(a_2.x), looked_up(a_2.y), looked_up(a_2.z), looked_up(a_2.w));
+    let at = floor(in.clip.xy) - in.tile_corner;
+    let own = (at - in.middle) * (params.spacing / params.reach_m);
+    let image = (at - in.image) * (params.spacing / params.reach_m);
+    var sum = with_images(in.away, own * own, image * image);
+    if any(in.away_below < vec4f(1.0)) {
+        sum += with_images(in.away_below, own * own, image * image);
     }
-    return params.peak * vec4f(bracket(a_2.x), bracket(a_2.y), bracket(a_2.z), bracket(a_2.w));
+    return params.peak * sum;
 }

@@ -2,12 +2,15 @@
 // al. 2006, section 4.2). A thread looks at the grid points of a slab above one texel.
 #import "lib/density_planes.wgsl"
 #import "lib/grid_place.wgsl"
+#import "lib/mirrors.wgsl"
 
 struct Params {
     iso_level: f32,
     columns: u32,
     rows: u32,
     first_slab: i32,
+    origin: vec3f,
+    spacing: f32,
 }
 
 struct Places {
@@ -58,6 +61,10 @@ fn find(@builtin(global_invocation_id) id: vec3u) {
     );
     for (var k = 0u; k < 4u; k++) {
         let at = vec3i(texel.x, 4 * slab + i32(k), texel.y);
+        // Nobody sees what is behind floor and walls, but discs shall reach them.
+        if !before_mirrors(params.origin + params.spacing * vec3f(at), 1.5 * params.spacing) {
+            continue;
+        }
         let crossed = (vec3u(along_x, along_y, along_z) >> vec3u(k)) & vec3u(1u);
         for (var axis = 0u; axis < 3u; axis++) {
             if crossed[axis] == 1u {

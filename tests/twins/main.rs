@@ -51,6 +51,8 @@ fn main() -> ExitCode {
         points::densities_are_the_sums,
         points::surfels_lie_on_the_surface,
         points::layouts_agree,
+        points::densities_go_on_behind_floor_and_walls,
         points::no_particles_and_no_level,
+        points::as_many_surfels_as_in_the_paper,
     ])
 }

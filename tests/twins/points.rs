@@ -61,7 +61,14 @@ fn from_atlas(engine: &mut Engine, positions: &[[f32; 3]], kernel: &str) -> Vec<
     let tiles = levels.div_ceil(4).min(8192 / columns);
     let texels = surfels_of(engine, positions, &[("kernel", word(kernel))], &["atlas"]).texels("atlas", 0);
     assert_eq!(texels.len(), columns * tiles * rows * levels.div_ceil(4).div_ceil(tiles));
-    unpacked(&layout, |slab, x, z| texels[((slab / tiles * rows) + z) * columns * tiles + slab % tiles * columns + x])
+    unpacked(&layout, tile_of(&layout, &texels))
+}
+
+/// The texel of a slab, x and z in the atlas.
+fn tile_of(layout: &Layout, texels: &[[f32; 4]]) -> impl Fn(usize, usize, usize) -> [f32; 4] {
+    let [columns, levels, rows] = layout.points;
+    let tiles = levels.div_ceil(4).min(8192 / columns);
+    move |slab, x, z| texels[((slab / tiles * rows) + z) * columns * tiles + slab % tiles * columns + x]
 }
 
 fn from_four_slices(engine: &mut Engine, positions: &[[f32; 3]]) -> Vec<f64> {
@@ -103,6 +110,65 @@ pub fn densities_are_the_sums(engine: &mut Engine) {
         for (slip, expected) in slips.iter().enumerate() {
             let error = relative_l2(&atlas, expected);
             assert!(error > DENSITY_TOLERANCE, "slip {slip} would pass: {error:e}");
+        }
+    }
+}
+
+/// The particles and their images behind the floor of their box and the nearer walls, which are so high.
+fn with_images(positions: &[[f32; 3]], layout: &Layout, walls_m: f64) -> Vec<[f32; 3]> {
+    let (min, max) = device::bounds(positions);
+    let near = layout.reach + 3.0 * layout.spacing;
+    let mut all = Vec::new();
+    for p in positions {
+        let mut images = vec![p.map(f64::from)];
+        for k in 0..3 {
+            let (low, high) = (f64::from(min[k]) - RADIUS, f64::from(max[k]) + RADIUS);
+            let x = f64::from(p[k]);
+            let is_low = x - low <= high - x;
+            let leans = f64::from(p[1]) - (f64::from(min[1]) - RADIUS) < walls_m;
+            if (x - low).min(high - x) < near && if k == 1 { is_low } else { leans } {
+                let image = 2.0 * if is_low { low } else { high } - x;
+                images.extend(images.clone().into_iter().map(|mut p| {
+                    p[k] = image;
+                    p
+                }));
+            }
+        }
+        all.extend(images.into_iter().map(|p| p.map(|x| x as f32)));
+    }
+    all
+}
+
+/// Where a liquid rests, its densities are those with images behind floor and walls: in the box and a little beyond.
+pub fn densities_go_on_behind_floor_and_walls(engine: &mut Engine) {
+    let positions = own();
+    let layout = Layout::of(&positions, RADIUS, GRID);
+    let (min, max) = device::bounds(&positions);
+    let [columns, levels, rows] = layout.points;
+    let seen = |x: usize, y: usize, z: usize| {
+        let at = [x, y, z];
+        (0..3).all(|k| {
+            let p = layout.origin[k] + layout.spacing * at[k] as f64;
+            let beyond = if k == 1 { 0.0 } else { 1.5 * layout.spacing };
+            p > f64::from(min[k]) - RADIUS - beyond && p < f64::from(max[k]) + RADIUS + beyond
+        })
+    };
+    let inner = |all: &[f64]| -> Vec<f64> {
+        let cells = (0..levels).flat_map(|y| (0..rows).flat_map(move |z| (0..columns).map(move |x| (x, y, z))));
+        cells.filter(|(x, y, z)| seen(*x, *y, *z)).map(|(x, y, z)| all[layout.index(x, y, z)]).collect()
+    };
+    for walls_m in [0.0, 0.3, 10.0] {
+        let params = [("rests", Value::Bool(true)), ("walls_m", Value::Float(walls_m))];
+        let texels = surfels_of(engine, &positions, &params, &["atlas"]).texels("atlas", 0);
+        let found = inner(&unpacked(&layout, tile_of(&layout, &texels)));
+        let expected = with_images(&positions, &layout, walls_m);
+        assert!(expected.len() > positions.len() + 500, "{} images", expected.len() - positions.len());
+        let sums = |of: &[[f32; 3]]| inner(&field::at_grid_points(of, &layout, |r| field::kernel(r, layout.reach)));
+        let error = relative_l2(&found, &sums(&expected));
+        eprintln!("walls of {walls_m} m: relative L2 error of the densities {error:.2e}");
+        assert!(error < 1.0e-5, "{error:e} with walls of {walls_m} m");
+        for slip in [positions.clone(), with_images(&positions, &layout, if walls_m > 0.0 { 0.0 } else { 0.3 })] {
+            assert!(relative_l2(&found, &sums(&slip)) > DENSITY_TOLERANCE, "other images would pass");
         }
     }
 }
@@ -181,9 +247,16 @@ pub fn surfels_lie_on_the_surface(engine: &mut Engine) {
 /// Both layouts find the same surfels.
 pub fn layouts_agree(engine: &mut Engine) {
     let positions = own();
-    let spacing = Layout::of(&positions, RADIUS, GRID).spacing;
+    for rests in [false, true] {
+        layouts_agree_on(engine, &positions, rests);
+    }
+}
+
+fn layouts_agree_on(engine: &mut Engine, positions: &[[f32; 3]], rests: bool) {
+    let spacing = Layout::of(positions, RADIUS, GRID).spacing;
     let mut found = ["atlas", "four_slices"].map(|holding| {
-        let mut all = surfels(&surfels_of(engine, &positions, &[("holding", word(holding))], &["surfels"]));
+        let params = [("holding", word(holding)), ("rests", Value::Bool(rests)), ("walls_m", Value::Float(1.0))];
+        let mut all = surfels(&surfels_of(engine, positions, &params, &["surfels"]));
         all.sort_by(|a, b| a.position.partial_cmp(&b.position).expect("numbers"));
         all
     });
@@ -201,13 +274,40 @@ pub fn layouts_agree(engine: &mut Engine) {
 }
 
 pub fn no_particles_and_no_level(engine: &mut Engine) {
+    // A cube of particles, on a coarse grid.
+    let at = |i: i32| [i % 8, i / 8 % 8, i / 64].map(|x| x as f32 * 2.0 * RADIUS as f32);
+    let few: Vec<[f32; 3]> = (0..512).map(at).collect();
+    let grid = ("grid", Value::Int(24));
     for holding in ["atlas", "four_slices"] {
-        let given = [("holding", word(holding))];
+        let given = [grid.clone(), ("holding", word(holding))];
         assert!(surfels(&surfels_of(engine, &[], &given, &["surfels"])).is_empty());
         for iso in [0.0, 90.0] {
-            let given = [("holding", word(holding)), ("iso", Value::Float(iso))];
-            assert!(surfels(&surfels_of(engine, &own(), &given, &["surfels"])).is_empty(), "iso {iso}");
+            let given = [grid.clone(), ("holding", word(holding)), ("iso", Value::Float(iso))];
+            assert!(surfels(&surfels_of(engine, &few, &given, &["surfels"])).is_empty(), "iso {iso}");
         }
-        assert!(!surfels(&surfels_of(engine, &[[0.0; 3]], &[("iso", Value::Float(0.1))], &["surfels"])).is_empty());
+        assert!(!surfels(&surfels_of(engine, &few, &given, &["surfels"])).is_empty(), "a level in between");
     }
+    assert!(!surfels(&surfels_of(engine, &[[0.0; 3]], &[("iso", Value::Float(0.1))], &["surfels"])).is_empty());
+}
+
+/// As many surfels as the paper's scenes have at 256 grid points: of the surface that is seen, not of floor and walls.
+pub fn as_many_surfels_as_in_the_paper(engine: &mut Engine) {
+    let positions = file("scenes/assets/pool_drop.xyz").expect("the repository has it");
+    let mut count = |grid: i64, rests: bool| {
+        let params = [
+            ("grid", Value::Int(grid)),
+            ("holding", word("four_slices")),
+            ("rests", Value::Bool(rests)),
+            ("walls_m", Value::Float(0.62)),
+        ];
+        let graph = "graphs/parts/surfels.ron";
+        let given =
+            Given { graph, positions: &positions, radius: 0.016_667, view: VIEW, params: &params, read: &["surfels"] };
+        surfels(&device::run(engine, &given)).len()
+    };
+    let seen = count(256, true);
+    eprintln!("{seen} surfels");
+    assert!((50_000..120_000).contains(&seen), "{seen} surfels");
+    let (seen, all) = (count(96, true), count(96, false));
+    assert!(all > seen * 3 / 2, "floor and walls count otherwise: {all} for {seen}");
 }
