@@ -1,63 +1,6 @@
-// Meshes in sun and sky light by glTF 2.0's metallic-roughness model (appendix B): Lambert and GGX for the sun, the
-// sky's irradiance and its prefiltered picture for the rest. Premultiplied colour.
-#import "dry_scene/skylight.wgsl"
-#import "dry_scene/sunlight.wgsl"
-#import "lib/camera.wgsl"
-#import "lib/mesh_place.wgsl"
-
-struct Params {
-    specular_levels: u32,
-}
-
-struct Material {
-    base_color_factor: vec4f,
-    metallic_factor: f32,
-    roughness_factor: f32,
-    normal_scale: f32,
-    occlusion_strength: f32,
-    emissive_factor: vec3f,
-    emissive_strength: f32,
-    alpha_mode: u32,
-    alpha_cutoff: f32,
-    unlit: u32,
-    ior: f32,
-    base_color_transform: mat3x3f,
-    metallic_roughness_transform: mat3x3f,
-    normal_transform: mat3x3f,
-    occlusion_transform: mat3x3f,
-    emissive_transform: mat3x3f,
-    base_color_texcoord: u32,
-    metallic_roughness_texcoord: u32,
-    normal_texcoord: u32,
-    occlusion_texcoord: u32,
-    emissive_texcoord: u32,
-}
-
-struct Vertex {
-    @builtin(position) clip: vec4f,
-    @location(0) world: vec3f,
-    @location(1) normal: vec3f,
-    @location(2) tangent: vec4f,
-    @location(3) uv0: vec2f,
-    @location(4) uv1: vec2f,
-    @location(5) color: vec4f,
-}
-
-const PI = 3.14159265;
-
-var<uniform> params: Params;
-var<uniform> material: Material;
-var base_color_texture: texture_2d<f32>;
-var base_color_sampler: sampler;
-var metallic_roughness_texture: texture_2d<f32>;
-var metallic_roughness_sampler: sampler;
-var normal_texture: texture_2d<f32>;
-var normal_sampler: sampler;
-var occlusion_texture: texture_2d<f32>;
-var occlusion_sampler: sampler;
-var emissive_texture: texture_2d<f32>;
-var emissive_sampler: sampler;
-var specular_specular: texture_cube<f32>;
+// Meshes in sun and sky light, the sun's faded by the water.
+#import "dry_scene/mesh_surface.wgsl"
+#import "dry_scene/through_thickness.wgsl"
 
 @vertex
 fn place(
@@ -69,99 +12,10 @@ fn place(
     @location(5) color0: vec4f,
     @location(6) instance: u32,
 ) -> Vertex {
-    let at = placed(position, normal, instance);
-    var out: Vertex;
-    out.clip = camera.clip_from_world * vec4f(at.world, 1.0);
-    out.world = at.world;
-    out.normal = at.normal;
-    out.tangent = vec4f((world_from_mesh(instance) * vec4f(tangent.xyz, 0.0)).xyz, tangent.w);
-    out.uv0 = uv0;
-    out.uv1 = uv1;
-    out.color = color0;
-    return out;
-}
-
-fn uv(in: Vertex, texcoord: u32, transform: mat3x3f) -> vec2f {
-    return (transform * vec3f(select(in.uv0, in.uv1, texcoord == 1u), 1.0)).xy;
-}
-
-/// The surface's normal with what the normal texture adds; `facing` is -1 for the back of a sheet.
-fn bumped(in: Vertex, texel: vec3f, facing: f32) -> vec3f {
-    let normal = normalize(in.normal);
-    let along = in.tangent.xyz - normal * dot(in.tangent.xyz, normal);
-    if dot(along, along) < 1.0e-12 {
-        return normal * facing;
-    }
-    let tangent = normalize(along);
-    let bitangent = in.tangent.w * cross(normal, tangent);
-    let bump = (texel * 2.0 - 1.0) * vec3f(material.normal_scale, material.normal_scale, 1.0);
-    return facing * normalize(bump.x * tangent + bump.y * bitangent + bump.z * normal);
-}
-
-/// GGX with Smith's visibility: what a light sends to the eye, without its colour and cosine.
-fn ggx(normal: vec3f, to_eye: vec3f, to_light: vec3f, alpha: f32, f0: vec3f) -> vec3f {
-    let half = normalize(to_eye + to_light);
-    let nh = clamp(dot(normal, half), 0.0, 1.0);
-    let nv = max(dot(normal, to_eye), 1.0e-4);
-    let nl = max(dot(normal, to_light), 1.0e-4);
-    let squared = alpha * alpha;
-    let spread = nh * nh * (squared - 1.0) + 1.0;
-    let distribution = squared / (PI * spread * spread);
-    let visibility = 0.5 / (nl * sqrt(nv * nv * (1.0 - squared) + squared) + nv * sqrt(nl * nl * (1.0 - squared) + squared));
-    let rest = 1.0 - clamp(dot(to_eye, half), 0.0, 1.0);
-    let fresnel = f0 + (1.0 - f0) * rest * rest * rest * rest * rest;
-    return fresnel * distribution * visibility;
-}
-
-/// How much of the prefiltered sky is mirrored: an empirical fit of the integral (Karis 2014, for mobile devices), and
-/// what rough surfaces send on after bouncing between their facets, which the fit leaves out (Lagarde and Golubev 2018).
-fn sky_mirrored(f0: vec3f, roughness: f32, nv: f32) -> vec3f {
-    let r = roughness * vec4f(-1.0, -0.0275, -0.572, 0.022) + vec4f(1.0, 0.0425, 1.04, -0.04);
-    let a = min(r.x * r.x, exp2(-9.28 * nv)) * r.x + r.y;
-    let scale = -1.04 * a + r.z;
-    let bias = 1.04 * a + r.w;
-    return clamp((f0 * scale + bias) * (1.0 + f0 * (1.0 / max(scale + bias, 0.05) - 1.0)), vec3f(0.0), vec3f(1.0));
+    return mesh_vertex(position, normal, tangent, uv0, uv1, color0, instance);
 }
 
 @fragment
 fn shade(in: Vertex, @builtin(front_facing) is_front: bool) -> @location(0) vec4f {
-    let base = material.base_color_factor * in.color
-        * textureSample(base_color_texture, base_color_sampler, uv(in, material.base_color_texcoord, material.base_color_transform));
-    let rough_metal = textureSample(metallic_roughness_texture, metallic_roughness_sampler,
-        uv(in, material.metallic_roughness_texcoord, material.metallic_roughness_transform));
-    let bump = textureSample(normal_texture, normal_sampler, uv(in, material.normal_texcoord, material.normal_transform));
-    let occluded = textureSample(occlusion_texture, occlusion_sampler,
-        uv(in, material.occlusion_texcoord, material.occlusion_transform)).r;
-    let glow = textureSample(emissive_texture, emissive_sampler, uv(in, material.emissive_texcoord, material.emissive_transform));
-
-    if material.alpha_mode == 1u && base.a < material.alpha_cutoff {
-        discard;
-    }
-    let alpha = select(1.0, base.a, material.alpha_mode == 2u);
-    let emitted = material.emissive_factor * material.emissive_strength * glow.rgb;
-    if material.unlit != 0u {
-        return vec4f(base.rgb * alpha, alpha);
-    }
-    let metallic = material.metallic_factor * rough_metal.b;
-    let roughness = clamp(material.roughness_factor * rough_metal.g, 0.04, 1.0);
-    let ratio = (material.ior - 1.0) / (material.ior + 1.0);
-    let f0 = mix(vec3f(ratio * ratio), base.rgb, metallic);
-    let albedo = base.rgb * (1.0 - metallic);
-    let normal = bumped(in, bump.xyz, select(-1.0, 1.0, is_front));
-    // Of a parallel view the eye is infinitely far behind the viewer.
-    let back = select(camera.position - in.world, world_from_eye_vector(vec3f(0.0, 0.0, 1.0)), camera.orthographic != 0u);
-    let to_eye = normalize(back);
-
-    let nv = clamp(dot(normal, to_eye), 0.0, 1.0);
-    let occlusion = 1.0 + material.occlusion_strength * (occluded - 1.0);
-    let mirrored = textureSampleLevel(specular_specular, linear_clamp, reflect(-to_eye, normal),
-        roughness * f32(params.specular_levels - 1u)).rgb;
-    // What is mirrored at the surface is not scattered below it.
-    let share = sky_mirrored(f0, roughness, nv);
-    let from_sky = (1.0 - share) * albedo / PI * sky_irradiance(normal) + share * mirrored;
-    let geometric = normalize(in.normal) * select(-1.0, 1.0, is_front);
-    let sun_here = from_sun(in.world, normal) * select(0.0, 1.0, dot(geometric, -sun.direction) > 0.0);
-    let direct = ((1.0 - share) * albedo / PI + ggx(normal, to_eye, -sun.direction, roughness * roughness, f0)) * sun_here;
-    let color = from_sky * occlusion + direct + emitted;
-    return vec4f(min(color, vec3f(60000.0)) * alpha, alpha);
+    return mesh_color(in, is_front);
 }

@@ -1,14 +1,9 @@
-// How much of the sun's light reaches a point: through the water above it, and past the meshes.
+// How much of the sun's light reaches a point: past the meshes, and as `through_water` says, which whoever imports this
+// has from `through_thickness.wgsl` or `through_caustics.wgsl`.
 #import "lib/light.wgsl"
 #import "lib/sun_view.wgsl"
 
 struct Sunlight {
-    middle: vec2f,
-    shadow_m: f32,
-    floor_m: f32,
-    shadow: f32,
-    absorption: vec3f,
-    particles_radius: f32,
     cast_middle: vec3f,
     cast_radius_m: f32,
     cast_px: u32,
@@ -18,29 +13,8 @@ override casts: bool = false;
 
 var<uniform> sunlight: Sunlight;
 var<uniform> sun: Light;
-// Metres of liquid along each ray of the sun, and that times their height and their height squared.
-var thickness: texture_2d<f32>;
-var linear_clamp: sampler;
 var sun_depth: texture_depth_2d;
 var depth_compare: sampler_comparison;
-
-/// Share of the sun's light that comes through the water above a point.
-fn through_water(p: vec3f) -> vec3f {
-    let fall = (p.y - sunlight.floor_m) / max(-sun.direction.y, 1.0e-3);
-    let on_floor = p.xz + sun.direction.xz * fall;
-    let uv = (on_floor - sunlight.middle) / sunlight.shadow_m * 0.5 + 0.5;
-    let moments = textureSampleLevel(thickness, linear_clamp, uv, 0.0).xyz;
-    if moments.x <= 0.0 || any(uv <= vec2f(0.0)) || any(uv >= vec2f(1.0)) {
-        return vec3f(1.0);
-    }
-    // As if the liquid filled the ray evenly, as high and as far apart as its mean and variance say.
-    let mean = moments.y / moments.x;
-    let half_m = sqrt(3.0 * max(moments.z / moments.x - mean * mean, 0.0)) + sunlight.particles_radius / sunlight.shadow_m;
-    let height = (p.y - sunlight.floor_m) / sunlight.shadow_m;
-    let depth_m = moments.x * clamp((mean + half_m - height) / (2.0 * half_m), 0.0, 1.0);
-    let covered = 1.0 - exp(-depth_m / (2.0 * sunlight.particles_radius));
-    return (1.0 - sunlight.shadow * covered) * exp(-sunlight.absorption * depth_m);
-}
 
 /// Share of the sun that no mesh hides, softened over a few texels.
 fn past_meshes(p: vec3f, normal: vec3f) -> f32 {

@@ -2,6 +2,7 @@
 #import "lib/harmonics.wgsl"
 #import "lib/light_screen.wgsl"
 #import "lib/mesh_shadow.wgsl"
+#import "lib/sample_planes.wgsl"
 
 struct Planes {
     planes: u32,
@@ -9,27 +10,15 @@ struct Planes {
 }
 
 var<uniform> plane_stack: Planes;
-var caustics: texture_2d_array<f32>;
 var surface: texture_2d<f32>;
 var<storage, read> ambient: array<vec4f>;
 var mesh_heights: texture_depth_2d;
-var linear_clamp: sampler;
 var depth_compare: sampler_comparison;
 
 /// The sun's light through a level square metre at a point; plain sun outside the planes' rectangle.
 fn light_on_level(p: vec3f) -> vec3f {
-    let uv = (p.xz - light_screen.region_min) / (light_screen.region_max - light_screen.region_min);
-    // Walls stand right on the rectangle.
-    if any(abs(uv - 0.5) > vec2f(0.5001)) || p.y > light_screen.top_m {
-        return irradiance(sun) * max(-sun.direction.y, 0.0);
-    }
-    let down = (light_screen.top_m - p.y) / (light_screen.top_m - light_screen.bottom_m);
-    let layer = clamp(down, 0.0, 1.0) * f32(plane_stack.planes - 1u);
-    let above = i32(layer);
-    let below = min(above + 1, i32(plane_stack.planes) - 1);
-    let upper = textureSampleLevel(caustics, linear_clamp, uv, above, 0.0).rgb;
-    let lower = textureSampleLevel(caustics, linear_clamp, uv, below, 0.0).rgb;
-    return mix(upper, lower, layer - f32(above));
+    let light = between_planes(p);
+    return select(irradiance(sun) * max(-sun.direction.y, 0.0), light.rgb, light.w > 0.0);
 }
 
 /// Metres of water that the sun's light has behind it at a point, by the surface that the light met first.

@@ -32,8 +32,8 @@ fn bent_sun() -> vec3f {
 /// Lowest and highest corner of the screen: the region, and where its light comes from. The middles of the outermost
 /// pixels lie on its rim, so that beams between them cover it.
 fn screen_corners() -> vec4f {
-    let bent = bent_sun();
-    let away = bent.xz / bent.y * (light_screen.top_m - light_screen.bottom_m);
+    // As it comes, which is further than bent by water.
+    let away = sun.direction.xz / min(sun.direction.y, -0.1) * (light_screen.top_m - light_screen.bottom_m);
     let low = min(light_screen.region_min, light_screen.region_min + away);
     let high = max(light_screen.region_max, light_screen.region_max + away);
     let half_pixel = 0.5 * (high - low) / (light_screen.screen_px - 1.0);

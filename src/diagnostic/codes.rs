@@ -139,6 +139,8 @@ codes! {
     USAGE = "usage";
     /// A counted buffer had too little room.
     OVERFLOW = "overflow";
+    /// Nothing came to a counted buffer whose graph warns of that.
+    EMPTY = "empty";
     /// The device refused or was lost.
     DEVICE = "device";
     /// A file that could not be written.

@@ -217,6 +217,8 @@ pub enum ResourceKind {
     },
     Counted {
         capacity: Expr,
+        /// What to warn of when nothing was appended in a whole frame.
+        empty: Option<String>,
     },
     /// The same description as another texture or buffer.
     Like(Name),

@@ -43,7 +43,7 @@ pub struct Drawn {
     pub repeats: usize,
     /// From the first pass to the GPU's last answer, in milliseconds.
     pub drawing_ms: f64,
-    /// Notes about buffers that grew.
+    /// Notes about buffers that grew, warnings about those that stayed empty.
     pub diagnostics: Diagnostics,
 }
 
@@ -67,6 +67,7 @@ impl Session {
                 self.grow()?;
                 continue;
             }
+            notes.extend(self.stayed_empty(&report));
             let mut reports = vec![report];
             if present {
                 reports.push(finish(&mut self.present, &self.engine)?);
@@ -146,6 +147,20 @@ impl Session {
             }
         }
         if errors.is_empty() { Ok(grown) } else { Err(errors) }
+    }
+
+    /// Warnings about counted buffers to which nothing came, where the graph says what that means.
+    pub(super) fn stayed_empty(&self, report: &Report) -> Diagnostics {
+        let mut found = Diagnostics::new();
+        let Some(plan) = self.plan() else { return found };
+        for count in report.counts.iter().filter(|count| count.raw == 0) {
+            let object = plan.objects.iter().find(|object| object.path == count.path);
+            if let Some((object, text)) = object.and_then(|object| Some((object, object.empty.as_ref()?))) {
+                let message = format!("nothing came to `{}`: {text}", count.path);
+                found.push(Diagnostic::warning(Code::EMPTY, message).at(object.span, "stayed empty"));
+            }
+        }
+        found
     }
 
     /// The presented picture: `Rgba16Float` texels, linear, 0 to 1.

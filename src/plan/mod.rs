@@ -9,6 +9,7 @@ pub mod changes;
 mod cull;
 pub mod explain;
 pub mod fields;
+mod fits;
 mod flow;
 mod insert;
 mod lower;
@@ -40,7 +41,9 @@ use crate::program::Program;
 /// # Errors
 /// Everything that is wrong, at once where one fault does not hide another.
 pub fn instantiate(program: &Program, request: &Request) -> Result<Plan, Diagnostics> {
-    plan(program, request, Mode { stand_in: false, reorder: true })
+    let mode = Mode { stand_in: false, reorder: true };
+    let planned = |program: &Program, request: &Request| plan(program, request, mode);
+    planned(program, request).map_err(|found| fits::explain(found, request, program, planned))
 }
 
 /// The same with every pass where the program has it, for comparison: what comes out is equal.

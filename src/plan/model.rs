@@ -133,6 +133,8 @@ pub struct Object {
     pub path: String,
     pub kind: ObjectKind,
     pub origin: Origin,
+    /// What a person is warned of when a frame appended nothing to it.
+    pub empty: Option<String>,
     /// First and last index into [`Plan::passes`] that touch it; absent if none does.
     pub lifetime: Option<(usize, usize)>,
     pub span: Span,

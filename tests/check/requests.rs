@@ -146,6 +146,14 @@ fn a_device_with_too_small_limits() {
 }
 
 #[test]
+fn a_parameter_too_large_for_the_device() {
+    expect("parameter_too_large", |r| {
+        r.params.insert("edge".into(), Value::Int(4096));
+        r.limits.max_texture_dimension_2d = 1000;
+    });
+}
+
+#[test]
 fn a_device_without_the_feature() {
     expect("device_feature", |r| r.features = Features::empty());
 }

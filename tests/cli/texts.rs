@@ -63,6 +63,20 @@ fn counted_buffers_that_overflow() {
     expect("overflow_in_steps", &project, &["render", "scenes/it.ron", "-o", "a.png", "--time", "1"], 1);
 }
 
+/// A counted buffer to which nothing came is told of, if the graph says what that means.
+#[test]
+fn counted_buffers_that_stay_empty() {
+    if !has_adapter() {
+        return;
+    }
+    let declarations = "resources: {\"found\": Counted(capacity: 4, empty: \"no dot is red\"), PICTURE},";
+    let passes = "Clear(of: \"found\"), Compute(shader: \"find.wgsl\", groups: 1),";
+    let shaders =
+        [("find", &*FIND.replace("atomicAdd(&found.count, 1u)", "atomicAdd(&found.count, 0u)")), ("show", SHOW_FOUND)];
+    let project = project_of(passes, declarations, &shaders);
+    expect("empty", &project, &["render", "scenes/it.ron", "-o", "a.png"], 0);
+}
+
 /// No driver: told with what to install, and exit code 3.
 #[test]
 #[cfg(target_os = "linux")]

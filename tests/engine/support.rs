@@ -62,7 +62,14 @@ pub trait PlanExt {
 
 impl PlanExt for Plan {
     fn object(&mut self, path: &str, kind: ObjectKind) -> ObjectId {
-        self.objects.push(Object { path: path.into(), kind, origin: Origin::Frame, lifetime: None, span: SPAN });
+        self.objects.push(Object {
+            path: path.into(),
+            kind,
+            origin: Origin::Frame,
+            empty: None,
+            lifetime: None,
+            span: SPAN,
+        });
         self.names.insert(path.into(), ObjectRef::Fixed(self.objects.len() - 1));
         self.objects.len() - 1
     }

@@ -118,6 +118,47 @@ pub fn waves_keep_the_light(engine: &mut Engine) {
     }
 }
 
+/// Cells that are cut where beams diverge bring most of what as many beams everywhere would, and lose no light.
+pub fn cut_cells_come_near_to_many_beams(engine: &mut Engine) {
+    let mut under = |px: i64, split: i64, tolerance: f64| {
+        let params = [
+            ("shape", Value::Word("bump".into())),
+            ("height_m", Value::Float(0.01)),
+            ("length_m", Value::Float(0.25)),
+            ("across", Value::Int(px)),
+            ("along", Value::Int(px)),
+            ("split", Value::Int(split)),
+            ("tolerance", Value::Float(tolerance)),
+            ("plane_px", Value::Int(128)),
+            ("absorption", Value::vec([0.0; 3])),
+            ("top_m", Value::Float(LEVEL + 0.05)),
+        ];
+        planes(engine, &params, [0.0, -1.0, 0.0], PLANES).swap_remove(PLANES - 1)
+    };
+    let (fine, coarse, cut, all_cut) = (under(97, 1, 0.2), under(25, 1, 0.2), under(97, 4, 0.2), under(97, 4, 0.0));
+    let off = |plane: &[[f64; 3]]| {
+        plane.iter().zip(&fine).map(|(a, b)| (a[1] - b[1]).abs()).sum::<f64>() / fine.iter().map(|b| b[1]).sum::<f64>()
+    };
+    eprintln!(
+        "off many beams by {:.4} with few, {:.4} with cut cells, {:.4} if all are",
+        off(&coarse),
+        off(&cut),
+        off(&all_cut)
+    );
+    assert!(off(&cut) < 0.4 * off(&coarse), "{} for {}", off(&cut), off(&coarse));
+    assert!(off(&all_cut) < 1.0e-3, "{}: all cells cut are many beams", off(&all_cut));
+    assert_near(mean(&cut), mean(&fine), 0.005, "cut cells");
+    // A plane under level water shows every gap; a tilted light makes none either.
+    for sun in [[0.0, -1.0, 0.0], ball::unit([-0.35, -0.85, -0.25])] {
+        let params = [("across", 61), ("along", 61), ("split", 4)].map(|(name, n)| (name, Value::Int(n)));
+        let level = planes(engine, &params, sun, PLANES).swap_remove(PLANES - 1);
+        let expected = under_level_water(LEVEL, sun, IOR);
+        for texel in level {
+            assert_near(texel, expected, 0.02, "a texel under level water");
+        }
+    }
+}
+
 /// The crest of a sine wave is a lens of radius 1 / (a k²), so its focus lies n / (n - 1) of that below it.
 pub fn a_wave_focuses_as_a_lens_does(engine: &mut Engine) {
     let length = 0.1;
@@ -157,6 +198,44 @@ pub fn a_wave_focuses_as_a_lens_does(engine: &mut Engine) {
         let ice = 1.309 / 0.309 / (height * k * k);
         assert!((found / ice - 1.0).abs() > 0.03, "another index would pass");
     }
+}
+
+/// The body of `graphs/imai2016.ron` loses what it reflects and no more of the light: by the surface that the light meets.
+pub fn a_body_of_ellipsoids_keeps_the_light(engine: &mut Engine) {
+    let positions = crate::particles::file("scenes/assets/dd40k_22.bgeo").expect("the repository has it");
+    let positions: Vec<[f32; 3]> = positions.into_iter().filter(|p| p[0] < -0.6 && p[1] < 0.3).collect();
+    let params = [
+        ("caustics", Value::Bool(true)),
+        ("screen", Value::Int(128)),
+        ("plane_px", Value::Int(128)),
+        ("planes", Value::Int(4)),
+        ("absorption", Value::vec([0.0; 3])),
+    ];
+    let read = ["light.caustics", "above.surface"];
+    let given = Given {
+        graph: "graphs/imai2016.ron",
+        positions: &positions,
+        radius: 0.025,
+        view: VIEW,
+        params: &params,
+        read: &read,
+    };
+    let mut done = device::run_lit(engine, &given, [0.0, -1.0, 0.0]);
+    let surface = done.texels("above.surface", 0);
+    let wet = surface.iter().filter(|t| t[1] > 0.0).count();
+    assert!(wet * 20 > surface.len() && wet < surface.len(), "{wet} pixels of {} show the body", surface.len());
+    let through = |ior: f64| {
+        let each = surface.iter().map(|t| if t[1] > 0.0 { transmittance(f64::from(t[1]), ior) } else { 1.0 });
+        each.sum::<f64>() / surface.len() as f64
+    };
+    for plane in 1..4 {
+        let texels = done.texels("light.caustics", plane);
+        let plane_light: Vec<[f64; 3]> = texels.iter().map(|t| [0, 1, 2].map(|c| f64::from(t[c]))).collect();
+        assert_near(mean(&plane_light), SUN.map(|e| e * through(IOR)), 0.02, &format!("plane {plane}"));
+        let brightest = plane_light.iter().map(|t| t[1]).fold(0.0, f64::max);
+        assert!(plane < 3 || brightest > 2.0 * SUN[1], "the body gathers light: {brightest}");
+    }
+    assert!(through(IOR) / through(1.0) < 0.998 && through(3.0) / through(IOR) < 0.975, "glass would pass");
 }
 
 /// A light from below, or along the horizon, gives black planes.

@@ -33,7 +33,7 @@ pub(super) fn resource(d: &mut Decoder<'_>, entry: &Named<'_>, state: bool) -> O
             texture(d, &fields)?
         }
         "Buffer" => ResourceKind::Buffer { items: amount(d, tag, &owner, "items")? },
-        "Counted" => ResourceKind::Counted { capacity: amount(d, tag, &owner, "capacity")? },
+        "Counted" => counted(d, tag, &owner)?,
         "Like" => {
             let node = d.single(tag, &owner, "the name of a texture or buffer in a string")?;
             ResourceKind::Like(path(d, node, &format!("`Like` of {owner}"))?)
@@ -50,6 +50,14 @@ fn amount(d: &mut Decoder<'_>, tag: &crate::syntax::Tagged, owner: &str, field: 
     let fields = d.body_fields(tag, owner, &[field])?;
     let node = fields.require(d, field)?;
     values::expr(d, node, &place(&fields, field))
+}
+
+fn counted(d: &mut Decoder<'_>, tag: &crate::syntax::Tagged, owner: &str) -> Option<ResourceKind> {
+    let fields = d.body_fields(tag, owner, &["capacity", "empty"])?;
+    let empty = values::label(d, &fields, "empty");
+    let node = fields.require(d, "capacity")?;
+    let capacity = values::expr(d, node, &place(&fields, "capacity"))?;
+    Some(ResourceKind::Counted { capacity, empty })
 }
 
 fn texture(d: &mut Decoder<'_>, fields: &Fields<'_>) -> Option<ResourceKind> {

@@ -237,6 +237,7 @@ impl Lowering<'_> {
             path: name.to_owned(),
             kind,
             origin: Origin::Input(name.to_owned()),
+            empty: None,
             lifetime: None,
             span: input.name.span,
         };
@@ -263,6 +264,7 @@ impl Lowering<'_> {
             path: path.clone(),
             kind: buffer(count, false),
             origin: Origin::Attribute { input: input.to_owned(), attribute: attribute.to_owned(), present },
+            empty: None,
             lifetime: None,
             span,
         };

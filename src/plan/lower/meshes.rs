@@ -139,6 +139,7 @@ impl Lowering<'_> {
                 usages: BufferUsages::empty(),
             }),
             origin: Origin::Mesh { input: root.to_owned(), buffer },
+            empty: None,
             lifetime: None,
             span: declared.unwrap_or(at),
         };

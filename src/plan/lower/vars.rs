@@ -47,6 +47,10 @@ impl Lowering<'_> {
             path: join(&self.scopes[s].path, &resource.name.value),
             kind,
             origin: if resource.state { Origin::State(usize::MAX) } else { Origin::Frame },
+            empty: match &resource.kind {
+                ResourceKind::Counted { empty, .. } => empty.clone(),
+                _ => None,
+            },
             lifetime: None,
             span: resource.name.span,
         };
@@ -83,7 +87,7 @@ impl Lowering<'_> {
                 let (items, causes) = self.item_count(s, items, "the number of items")?;
                 Ok((buffer(items as u64, false), false, causes))
             }
-            ResourceKind::Counted { capacity } => {
+            ResourceKind::Counted { capacity, .. } => {
                 let (declared, mut causes) = self.item_count(s, capacity, "the capacity")?;
                 let name = self.scopes[s].graph.resources.iter().find(|r| r.name.span == at);
                 let path = join(&self.scopes[s].path, name.map_or("", |r| r.name.value.as_str()));
