@@ -5,7 +5,7 @@ use std::path::Path;
 
 use glam::{Mat4, Vec4};
 use meniscus::diagnostic::{Sources, Style, render_all};
-use meniscus::engine::{Engine, Frame, Runner, StepInfo};
+use meniscus::engine::{Engine, Frame, Report, Runner, StepInfo};
 use meniscus::files::DiskFiles;
 use meniscus::graph::value::Value;
 use meniscus::plan::instantiate;
@@ -146,7 +146,7 @@ pub fn prepare<'a>(engine: &'a mut Engine, given: &Given<'_>) -> Done<'a> {
 
 impl Done<'_> {
     /// Runs a frame seen from anywhere; the eye looks along its own -z.
-    pub fn draw(&mut self, view: View, world_from_view: Mat4, sun: [f64; 3]) {
+    pub fn draw(&mut self, view: View, world_from_view: Mat4, sun: [f64; 3]) -> Report {
         let live = |name: &str, _: Option<&StepInfo>| match name {
             "sun.direction" => Some(Value::vec(sun)),
             "sun.color" => Some(Value::vec(SUN.map(|x| x / 4.0))),
@@ -155,7 +155,13 @@ impl Done<'_> {
         };
         let frame = Frame { time: 0.0, delta: 0.0, frame: 0, steps: &[], live: &live, only: None };
         self.runner.run(self.engine, &frame).unwrap_or_else(|d| panic!("{d:#?}"));
-        self.runner.finish(self.engine).unwrap_or_else(|d| panic!("{d:#?}"));
+        self.runner.finish(self.engine).unwrap_or_else(|d| panic!("{d:#?}"))
+    }
+
+    /// Has all passes run in each frame, and timed.
+    pub fn time_all(&mut self) {
+        self.runner.run_all(true);
+        self.runner.time_passes(true);
     }
 
     /// A buffer's 32-bit words.
