@@ -159,6 +159,7 @@ impl Done<'_> {
     }
 
     /// Has all passes run in each frame, and timed.
+    #[allow(dead_code, reason = "a bench asks for it")]
     pub fn time_all(&mut self) {
         self.runner.run_all(true);
         self.runner.time_passes(true);
