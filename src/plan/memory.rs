@@ -71,7 +71,7 @@ pub(super) fn share(
     if total(&smallest) > total(&keep) {
         smallest.clone_from(&keep);
     }
-    let (largest_at, lower_bound) = largest(&lives, runs.len());
+    let (largest_at, lower_bound) = largest(&lives);
     Memory {
         keep,
         smallest,
@@ -79,7 +79,7 @@ pub(super) fn share(
         unshared: lives.iter().map(|life| life.bytes).sum(),
         lower_bound,
         largest_at,
-        alike_bound: alike_bound(objects, &lives, runs.len()),
+        alike_bound: alike_bound(objects, &lives),
         outside: objects.iter().filter(|o| o.origin != Origin::Frame).map(|o| bytes(&o.kind)).sum(),
         ..Memory::default()
     }
@@ -195,15 +195,13 @@ pub(super) fn live_at_once<'a>(
 }
 
 /// The first pass at which the most bytes are live, and how many.
-fn largest(lives: &[Life], passes: usize) -> (usize, u64) {
-    // Bytes that begin and end at each pass; a running sum is the live set.
-    let mut change = vec![0i64; passes + 1];
-    for life in lives {
-        change[life.first] += life.bytes as i64;
-        change[life.last + 1] -= life.bytes as i64;
-    }
+fn largest(lives: &[Life]) -> (usize, u64) {
+    // Bytes that begin and end at each pass; a running sum is the live set. What ends comes first.
+    let begins = |life: &Life| [(life.first, life.bytes as i64), (life.last + 1, -(life.bytes as i64))];
+    let mut changes: Vec<(usize, i64)> = lives.iter().flat_map(begins).collect();
+    changes.sort_unstable();
     let (mut at, mut most, mut live) = (0, 0, 0);
-    for (pass, change) in change.iter().enumerate() {
+    for (pass, change) in changes {
         live += change;
         if live > most {
             (at, most) = (pass, live);
@@ -213,10 +211,10 @@ fn largest(lives: &[Life], passes: usize) -> (usize, u64) {
 }
 
 /// Bytes of the largest live sets of those that can share, one class after another.
-fn alike_bound(objects: &[Object], lives: &[Life], passes: usize) -> u64 {
+fn alike_bound(objects: &[Object], lives: &[Life]) -> u64 {
     let mut classes: HashMap<Option<Texture>, Vec<Life>> = HashMap::new();
     for life in lives {
         classes.entry(class(&objects[life.id].kind)).or_default().push(*life);
     }
-    classes.values().map(|alike| largest(alike, passes).1).sum()
+    classes.values().map(|alike| largest(alike).1).sum()
 }
