@@ -11,10 +11,15 @@ use std::fs;
 use std::hint::black_box;
 use std::io::{BufWriter, Write as _};
 use std::path::{Path, PathBuf};
-use std::time::Instant;
+use std::thread::sleep;
+use std::time::{Duration, Instant};
 
+use meniscus::diagnostic::Diagnostics;
 use meniscus::engine::{Gpu, GpuOptions};
 use meniscus::files::{DiskFiles, Files as _};
+use meniscus::host::sequence::Track;
+use meniscus::host::{Player, When};
+use meniscus::scene::sequence::Pattern;
 use meniscus::scene::{convert, particles};
 
 const REPEATS: usize = 5;
@@ -73,6 +78,36 @@ fn median(mut run: impl FnMut()) -> f64 {
     times[REPEATS / 2]
 }
 
+/// Plays numbered files of `count` particles from the disk at 25 frames a second: the longest wait for a frame once two
+/// are read ahead, and how long a frame takes to read.
+fn play(folder: &Path, count: usize) {
+    const FRAMES: u64 = 24;
+    let pattern = Pattern::of(&folder.join("play_##.bgeo")).unwrap();
+    (0..FRAMES).for_each(|n| bgeo(&pattern.path(n), count));
+    let one_ms = median(|| {
+        let path = pattern.path(0);
+        black_box(particles::read(&path, &DiskFiles.read(&path).unwrap()).unwrap());
+    });
+    let (input, frames) = ("particles".to_owned(), 0..=FRAMES - 1);
+    let track = Track { input, pattern: pattern.clone(), frames, rate: 25.0, radius_m: 0.01, bounds: None };
+    let mut player = Player::new(&[track], When::Frame(0), DiskFiles);
+    let (began, mut longest_ms) = (Instant::now(), 0.0_f64);
+    for n in 0..FRAMES {
+        sleep(Duration::from_millis(40 * n).saturating_sub(began.elapsed()));
+        let asked = Instant::now();
+        let mut found = Diagnostics::new();
+        black_box(player.inputs(When::Frame(n), &mut found));
+        assert!(found.is_empty());
+        if n > 2 {
+            longest_ms = longest_ms.max(asked.elapsed().as_secs_f64() * 1e3);
+        }
+    }
+    (0..FRAMES).for_each(|n| fs::remove_file(pattern.path(n)).unwrap());
+    println!(
+        "a sequence of {count} particles a frame: {one_ms:.0} ms to read one, longest wait {longest_ms:.0} ms at 25 frames a second"
+    );
+}
+
 fn main() {
     let millions = std::env::var("MENISCUS_BENCH_MILLIONS").ok().and_then(|n| n.parse().ok()).unwrap_or(12.6_f64);
     let count = (millions * 1e6) as usize;
@@ -95,6 +130,7 @@ fn main() {
         measure(name, &path, device.as_ref());
         fs::remove_file(&path).unwrap();
     }
+    play(&folder, 500_000);
     fs::remove_dir_all(&folder).unwrap();
 }
 

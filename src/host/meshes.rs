@@ -34,6 +34,9 @@ pub struct Meshes {
     blended: Vec<(u32, Vec3)>,
 }
 
+/// At how many times of its animation a body is looked at for its bounds.
+const POSES: u32 = 64;
+
 #[derive(Debug, Default)]
 struct Vertices {
     positions: Vec<[f32; 3]>,
@@ -230,19 +233,21 @@ impl Meshes {
         };
     }
 
-    /// The box around all bodies at time 0.
+    /// The box around all bodies wherever they come in their animations.
     fn bounds(&self) -> (Vec3, Vec3) {
-        let poses: Vec<Vec<Mat4>> = self.entries.iter().map(|entry| entry.pose(0.0)).collect();
+        let poses: Vec<Vec<Vec<Mat4>>> = self.entries.iter().map(Entry::poses).collect();
         let mut boxes: BTreeMap<u32, (Vec3, Vec3)> = BTreeMap::new();
         let (mut min, mut max) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
         for instance in &self.instances {
             let (low, high) = *boxes.entry(instance.first_triangle).or_insert_with(|| self.vertices.bounds(instance));
-            let world = self.bodies[instance.body as usize] * poses[instance.entry][instance.node];
-            for corner in 0..8 {
-                let part =
-                    Vec3::from_array([0, 1, 2].map(|axis| if corner >> axis & 1 == 0 { low } else { high }[axis]));
-                let at = world.transform_point3(part);
-                (min, max) = (min.min(at), max.max(at));
+            for pose in &poses[instance.entry] {
+                let world = self.bodies[instance.body as usize] * pose[instance.node];
+                for corner in 0..8 {
+                    let part =
+                        Vec3::from_array([0, 1, 2].map(|axis| if corner >> axis & 1 == 0 { low } else { high }[axis]));
+                    let at = world.transform_point3(part);
+                    (min, max) = (min.min(at), max.max(at));
+                }
             }
         }
         if min.x <= max.x { (min, max) } else { (Vec3::ZERO, Vec3::ZERO) }
@@ -345,6 +350,13 @@ impl Vertices {
 }
 
 impl Entry {
+    /// The poses that its animation goes through, at even times.
+    fn poses(&self) -> Vec<Vec<Mat4>> {
+        let animation = self.animation.and_then(|a| self.model.animations.get(a));
+        let Some(duration_s) = animation.map(|a| f64::from(a.duration_s)) else { return vec![self.pose(0.0)] };
+        (0..=POSES).map(|i| self.model.pose(self.animation, duration_s * f64::from(i) / f64::from(POSES))).collect()
+    }
+
     /// Body from node, for each node, at a time of the scene.
     fn pose(&self, time_s: f64) -> Vec<Mat4> {
         let duration_s = self.animation.and_then(|a| self.model.animations.get(a)).map_or(0.0, |a| a.duration_s);

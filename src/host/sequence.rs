@@ -246,6 +246,8 @@ fn unreadable(path: &Path, error: &io::Error) -> Diagnostic {
 
 #[cfg(test)]
 mod tests {
+    use std::time::{Duration, Instant};
+
     use super::*;
     use crate::files::MemoryFiles;
 
@@ -304,6 +306,49 @@ mod tests {
             assert!(player.tracks[0].read.len() <= 1 + AHEAD as usize, "{frame}");
             assert!(player.tracks[0].asked.len() <= 1 + AHEAD as usize, "{frame}");
         }
+    }
+
+    /// Files that take a while to read.
+    struct Slow(MemoryFiles, Duration);
+
+    impl Files for Slow {
+        fn read(&self, path: &Path) -> io::Result<Arc<[u8]>> {
+            thread::sleep(self.1);
+            self.0.read(path)
+        }
+
+        fn exists(&self, path: &Path) -> bool {
+            self.0.exists(path)
+        }
+    }
+
+    /// Plays at a frame each 50 ms; gives the longest wait for a frame once it is warm.
+    fn longest_wait(reading: Duration) -> Duration {
+        let csv = |n: u64| format!("x,y,z\n{}", (0..n).map(|i| format!("{i},{n},0\n")).collect::<String>());
+        let files = (0..20).fold(MemoryFiles::default(), |files, n| files.with(format!("f/p_{n:02}.csv"), csv(n + 1)));
+        let track = Track { frames: 0..=19, ..track(20.0) };
+        let mut player = Player::new(&[track], When::Frame(0), Slow(files, reading));
+        let frame = Duration::from_millis(50);
+        let began = Instant::now();
+        let mut longest = Duration::ZERO;
+        for n in 0..20_u32 {
+            thread::sleep((frame * n).saturating_sub(began.elapsed()));
+            let asked = Instant::now();
+            shown(&mut player, When::Frame(n.into()));
+            if n > AHEAD as u32 {
+                longest = longest.max(asked.elapsed());
+            }
+        }
+        longest
+    }
+
+    #[test]
+    fn a_sequence_plays_without_a_stall() {
+        // A file that takes 0.6 of a frame is there when it is asked for, one that takes three frames is not.
+        let quick = (0..3).map(|_| longest_wait(Duration::from_millis(30))).min();
+        assert!(quick.is_some_and(|wait| wait < Duration::from_millis(50)), "{quick:?}");
+        let slow = longest_wait(Duration::from_millis(150));
+        assert!(slow > Duration::from_millis(50), "{slow:?}");
     }
 
     #[test]

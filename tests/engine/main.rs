@@ -81,6 +81,7 @@ fn main() -> ExitCode {
         meshes::animations_move_nodes,
         meshes::what_blends_goes_from_back_to_front,
         meshes::steps_see_meshes_move,
+        meshes::bounds_cover_animations,
         meshes::scenes_without_particles_are_dry,
         meshes::an_even_sky_makes_white_things_as_bright_as_it,
         meshes::meshes_cast_shadows_on_meshes,

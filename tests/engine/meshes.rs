@@ -335,6 +335,29 @@ pub fn steps_see_meshes_move(_: &mut Engine) {
     assert_eq!(at("animation: None", 1.25), (0.0, 12.0));
 }
 
+/// The bounds are those of all places that animations take bodies to.
+pub fn bounds_cover_animations(_: &mut Engine) {
+    let graph = r#"Graph(
+        inputs: { "meshes": Meshes },
+        resources: { "color": Texture(format: Rgba32Float, size: "viewport") },
+        passes: [Fullscreen(shader: "bounds.wgsl", color: ["color"])],
+        outputs: ["color"],
+    )"#;
+    let bounds = "struct Params { meshes_min: vec3f, meshes_max: vec3f }
+        var<uniform> params: Params;
+        @fragment fn ends() -> @location(0) vec4f { return vec4f(params.meshes_min.x, params.meshes_max.xyz); }";
+    let rest = r#", "animations": [{ "samplers": [{ "input": 3, "output": 4 }],
+        "channels": [{ "sampler": 0, "target": { "node": 0, "path": "translation" } }] }]"#;
+    let of = |how: &str| {
+        let scene = scene(&format!(r#"(file: "moving.gltf", {how})"#));
+        let moving = square("", r#", "translation": [0, 0, 0]"#, rest);
+        let files = files(graph.to_owned(), scene).with("moving.gltf", moving).with("bounds.wgsl", bounds);
+        seen(&files, Moment::default(), &[[0.0, 0.0]])[0]
+    };
+    assert_eq!(of("position: (0, 1, 0)"), [-0.5, 2.5, 1.5, 0.0]);
+    assert_eq!(of("animation: None"), [-0.5, 0.5, 0.5, 0.0]);
+}
+
 /// Scenes of meshes alone: the shipped graphs show what is dry.
 pub fn scenes_without_particles_are_dry(_: &mut Engine) {
     let of = |graph: &str, meshes: &str| {
