@@ -59,6 +59,23 @@ fn what_keeps_the_content_needs_the_earlier_writer() {
     assert_eq!(paths(&Test::of(AB, &passes, r#""a""#).plan()), ["early", "more"]);
 }
 
+/// A draw that clears depth alone still sees the stencil that was there.
+#[test]
+fn clearing_one_aspect_keeps_the_other() {
+    const TARGETS: &str =
+        r#""t": Texture(format: Rgba16Float, size: (8, 8)), "z": Texture(format: Depth24PlusStencil8, size: (8, 8))"#;
+    let passes = |stencil: &str| {
+        format!(
+            r#"Clear(name: "zero", of: "z", value: 0.5),
+            Draw(name: "draw", shader: "triangle.wgsl", vertices: 3, color: [(to: "t", clear: 0.0)],
+                depth: Depth(to: "z", compare: Always, write: true, clear: 0.0{stencil})),"#
+        )
+    };
+    let run = |stencil: &str| paths(&Test::of(TARGETS, &passes(stencil), r#""t""#).plan()).join(" ");
+    assert_eq!(run(", stencil: (compare: Equal, reference: 3)"), "zero draw");
+    assert_eq!(run(", stencil: (compare: Equal, reference: 3, clear: 0)"), "draw");
+}
+
 const LAYERS: &str =
     r#""t": Texture(format: Rgba16Float, size: (8, 8), layers: 2), "o": Texture(format: Rgba16Float, size: (8, 8))"#;
 

@@ -269,8 +269,11 @@ impl Lowering<'_> {
             self.need(s, Features::DEPTH32FLOAT_STENCIL8, depth.span, "this format needs it");
         }
         let writes = depth.write || clear.is_some() || stencil.as_ref().is_some_and(Stencil::writes);
-        let whole = clear.is_some();
-        let access = Access { read: !whole, write: writes, whole, ..whole_write(&view) };
+        // Clearing one aspect leaves the other as it is.
+        let clears_stencil = stencil.as_ref().is_some_and(|s| s.clear.is_some());
+        let whole = clear.is_some() && (clears_stencil || !format.has_stencil_aspect());
+        let read = clear.is_none() || (stencil.is_some() && !clears_stencil);
+        let access = Access { read, write: writes, whole, ..whole_write(&view) };
         draft.accesses.push((access, Place::at(depth.span, &depth.to.of.value, false)));
         Ok(Some(DepthTarget { view, format, compare: depth.compare, write: depth.write, clear, bias, stencil }))
     }
