@@ -2,6 +2,8 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
+#[path = "cli/bench.rs"]
+mod bench;
 #[path = "support/golden.rs"]
 mod golden;
 #[path = "support/project.rs"]

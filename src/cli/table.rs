@@ -27,7 +27,7 @@ mod tests {
 
     #[test]
     fn passes_are_listed_in_order_with_their_sum() {
-        let pass = |path: &str, gpu_ms| PassReport { path: path.into(), runs: 1, gpu_ms, timed_with: None };
+        let pass = |path: &str, gpu_ms| PassReport { path: path.into(), runs: 1, gpu_ms, ..PassReport::default() };
         let report = |passes| Report { passes, encode_ms: 0.25, ..Report::default() };
         let timed = passes(&[report(vec![pass("grid/scan", Some(1.5)), pass("shade", Some(2.25))])]);
         let expected = "    GPU ms   runs  pass\n     1.500      1  grid/scan\n     2.250      1  shade\n     3.750         on the GPU together; 0.250 ms encoding on the CPU\n";

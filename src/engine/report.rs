@@ -11,6 +11,8 @@ pub struct Report {
     pub frame: u64,
     /// Passes that ran, in program order.
     pub passes: Vec<PassReport>,
+    /// Passes that the plan has: those that did not run were skipped.
+    pub passes_planned: usize,
     /// CPU time of a frame up to its submission, in milliseconds.
     pub encode_ms: f64,
     /// CPU time of submitting, in milliseconds.
@@ -37,10 +39,12 @@ pub struct UnitReport {
     pub why: Vec<Reason>,
 }
 
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct PassReport {
     /// Instance path.
     pub path: String,
+    /// Which of the report's units it belongs to: that says why it ran.
+    pub unit: usize,
     /// How often it ran in the frame: more than once inside `Steps`.
     pub runs: u32,
     /// GPU time of all its runs in milliseconds, where the device can tell.
@@ -48,6 +52,10 @@ pub struct PassReport {
     /// The pass whose time holds this one's: they share a pass of wgpu's, and the device tells
     /// no time inside of it.
     pub timed_with: Option<String>,
+    /// CPU time of recording all its runs in milliseconds, if times were asked for. Of draws that
+    /// share a render pass the first has it all. What wgpu does when the frame's commands are
+    /// finished is in the frame's time only.
+    pub record_ms: Option<f64>,
 }
 
 #[derive(Clone, Debug, PartialEq, Eq)]

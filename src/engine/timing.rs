@@ -2,13 +2,14 @@
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU8, Ordering};
+use std::time::Instant;
 
 use super::bind::stat_of;
 use super::encode::Begun;
 use super::gpu::Gpu;
 use super::report::{CountReport, PassReport, Report, UnitReport};
 use crate::plan::changes::{Changes, Decision};
-use crate::plan::model::{ObjectKind, Origin, PassKind, Plan};
+use crate::plan::model::{ObjectKind, Origin, Pass, PassKind, Plan};
 
 /// Frames whose answers may be on their way at once.
 const IN_FLIGHT: usize = 3;
@@ -58,6 +59,8 @@ struct Frame {
     with: Vec<(usize, usize)>,
     /// How often each pass ran.
     runs: Vec<u32>,
+    /// Milliseconds of recording each pass; of draws that share a render pass, the first has all.
+    record_ms: Vec<f64>,
     /// Which units ran, and why.
     decision: Decision,
 }
@@ -65,12 +68,13 @@ struct Frame {
 impl Frame {
     /// Takes over another's, into memory that is there.
     fn copy_from(&mut self, other: &Self) {
-        let Self { number, sequence, encode_ms, begun, uploaded_bytes, marks, with, runs, decision } = other;
+        let Self { number, sequence, encode_ms, begun, uploaded_bytes, marks, with, runs, record_ms, decision } = other;
         (self.number, self.sequence) = (*number, *sequence);
         (self.encode_ms, self.begun, self.uploaded_bytes) = (*encode_ms, *begun, *uploaded_bytes);
         self.marks.clone_from(marks);
         self.with.clone_from(with);
         self.runs.clone_from(runs);
+        self.record_ms.clone_from(record_ms);
         self.decision.clone_from(decision);
     }
 }
@@ -82,6 +86,16 @@ struct Answered {
     is_new: bool,
     frame: Frame,
     bytes: Vec<u8>,
+}
+
+/// Where the current frame's answer goes to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Captured {
+    /// Nowhere: all slots are on their way.
+    No,
+    Slot(usize),
+    /// The device has nothing to say: no times are wanted and nothing is counted.
+    Known,
 }
 
 #[derive(Debug)]
@@ -100,8 +114,7 @@ pub(super) struct Timing {
     stats_bytes: u64,
     slots: Vec<Slot>,
     now: Frame,
-    /// The slot that the current frame's answer goes to.
-    captured: Option<usize>,
+    captured: Captured,
     /// Bytes that had gone to the device at the frame before.
     uploaded: u64,
     latest: Answered,
@@ -122,7 +135,7 @@ impl Timing {
             stats_bytes: settles as u64 * 4,
             slots: Vec::new(),
             now: Frame::default(),
-            captured: None,
+            captured: Captured::No,
             uploaded: gpu.uploaded_bytes(),
             latest: Answered::default(),
         };
@@ -175,8 +188,12 @@ impl Timing {
         self.now.with.clear();
         self.now.runs.clear();
         self.now.runs.resize(plan.passes.len(), 0);
+        self.now.record_ms.clear();
+        if self.wanted {
+            self.now.record_ms.resize(plan.passes.len(), 0.0);
+        }
         self.now.begun = Begun::default();
-        self.captured = None;
+        self.captured = Captured::No;
     }
 
     pub fn turn(&mut self, on: bool) {
@@ -201,6 +218,18 @@ impl Timing {
         }
         self.now.marks.push(pass);
         Some(pair)
+    }
+
+    /// When recording a pass began, if anybody wants times.
+    pub fn clock(&self) -> Option<Instant> {
+        self.wanted.then(Instant::now)
+    }
+
+    /// Notes how long recording took that began then.
+    pub fn recorded(&mut self, pass: usize, began: Option<Instant>) {
+        if let (Some(began), Some(spent)) = (began, self.now.record_ms.get_mut(pass)) {
+            *spent += began.elapsed().as_secs_f64() * 1e3;
+        }
     }
 
     /// For a render pass that is one of those that make up a pass.
@@ -274,6 +303,16 @@ impl Timing {
         }
     }
 
+    /// Whether the device has an answer to give for the current frame.
+    pub fn has_questions(&self) -> bool {
+        !self.now.marks.is_empty() || self.stats_bytes > 0
+    }
+
+    /// Notes that all there is to know of the current frame is known here.
+    pub fn know(&mut self) {
+        self.captured = Captured::Known;
+    }
+
     /// Copies times and counts to a buffer that can be read, if one is free.
     pub fn capture(&mut self, gpu: &Gpu, encoder: &mut wgpu::CommandEncoder, stats: &wgpu::Buffer) {
         if self.slots.iter().all(|s| s.state.load(Ordering::Acquire) != FREE) {
@@ -297,7 +336,7 @@ impl Timing {
         slot.state.store(WAITING, Ordering::Release);
         let answer = Answer(Arc::clone(&slot.state));
         encoder.map_buffer_on_submit(&slot.buffer, wgpu::MapMode::Read, .., move |mapped| answer.came(mapped.is_ok()));
-        self.captured = Some(at);
+        self.captured = Captured::Slot(at);
     }
 
     /// Whether nothing ran in the current frame.
@@ -306,7 +345,7 @@ impl Timing {
     }
 
     pub fn is_captured(&self) -> bool {
-        self.captured.is_some()
+        self.captured != Captured::No
     }
 
     /// Notes how many bytes have gone to the device up to now.
@@ -323,8 +362,14 @@ impl Timing {
     /// Notes how long the frame took on the CPU, also for the answer that is on its way.
     pub fn submitted(&mut self, encode_ms: f64) {
         self.now.encode_ms = encode_ms;
-        if let Some(at) = self.captured {
-            self.slots[at].frame.copy_from(&self.now);
+        match self.captured {
+            Captured::No => {}
+            Captured::Slot(at) => self.slots[at].frame.copy_from(&self.now),
+            Captured::Known => {
+                self.latest.is_new = true;
+                self.latest.frame.copy_from(&self.now);
+                self.latest.bytes.clear();
+            }
         }
     }
 
@@ -392,12 +437,19 @@ impl Timing {
 }
 
 fn report(plan: &Plan, frame: &Frame) -> Report {
-    let ran = plan.passes.iter().zip(&frame.runs).filter(|(_, runs)| **runs > 0);
+    let ran = plan.passes.iter().enumerate().filter(|(index, _)| frame.runs.get(*index).is_some_and(|runs| *runs > 0));
+    let pass = |(index, pass): (usize, &Pass)| PassReport {
+        path: pass.path.clone(),
+        unit: pass.unit,
+        runs: frame.runs[index],
+        gpu_ms: None,
+        timed_with: None,
+        record_ms: frame.record_ms.get(index).copied(),
+    };
     Report {
         frame: frame.number,
-        passes: ran
-            .map(|(p, runs)| PassReport { path: p.path.clone(), runs: *runs, gpu_ms: None, timed_with: None })
-            .collect(),
+        passes: ran.map(pass).collect(),
+        passes_planned: plan.passes.len(),
         encode_ms: (frame.encode_ms - frame.begun.submit_ms).max(0.0),
         submit_ms: frame.begun.submit_ms,
         compute_passes: frame.begun.compute_passes,

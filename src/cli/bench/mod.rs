@@ -1,6 +1,7 @@
 //! `meniscus bench`: the time of each pass on the GPU, of encoding and submitting on the CPU,
 //! counters and memory; and whether two measurements differ.
 
+mod changes;
 mod compare;
 mod print;
 mod saved;
@@ -15,6 +16,7 @@ use crate::engine::{Gpu, Report};
 use crate::files::DiskFiles;
 use crate::host::{Cache, Content, Moment, Session, load};
 use crate::plan::stats::Statistic;
+use changes::Change;
 use compare::Comparison;
 
 /// Frames before the first that counts: drivers compile late.
@@ -56,13 +58,16 @@ pub(super) struct Measured {
     pub memory: Memory,
     /// Of the picture that was measured, drawn once more with what only statistics need.
     pub statistics: Vec<Statistic>,
+    /// What runs when only one thing changes.
+    changes: Vec<Change>,
 }
 
-/// A pass's milliseconds on the GPU in each frame.
+/// A pass's milliseconds in each frame: on the GPU, and of recording it on the CPU.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct PassTimes {
     pub path: String,
     pub gpu_ms: Vec<f64>,
+    pub record_ms: Vec<f64>,
     pub timed_with: Option<String>,
 }
 
@@ -111,6 +116,7 @@ fn bench(args: &BenchArgs, sources: &mut Sources) -> Result<Answer, Diagnostics>
             one.frame(counts, &mut notes)?;
         }
     }
+    subject.try_changes()?;
     subject.look(&mut notes)?;
     let measured = subject.end(args.frames);
     let comparison = match (other, before) {
@@ -185,6 +191,13 @@ impl Subject {
         Ok(())
     }
 
+    fn try_changes(&mut self) -> Result<(), Diagnostics> {
+        if let Some(session) = &mut self.session {
+            self.measured.changes = changes::look(session)?;
+        }
+        Ok(())
+    }
+
     fn end(mut self, frames: u32) -> Measured {
         self.measured.frames = frames;
         self.measured
@@ -201,6 +214,7 @@ impl Measured {
                 self.passes.len() - 1
             });
             self.passes[at].gpu_ms.extend(pass.gpu_ms);
+            self.passes[at].record_ms.extend(pass.record_ms);
             self.passes[at].timed_with.clone_from(&pass.timed_with);
         }
     }

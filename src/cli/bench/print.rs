@@ -13,22 +13,23 @@ fn shown(ms: Option<f64>) -> String {
 pub(super) fn table(m: &Measured, comparison: Option<&Comparison>) -> String {
     let [width, height] = m.size;
     let mut text = format!(
-        "{} at {width} x {height} on {}, {} frames\n    median       p99  ms on the GPU\n",
+        "{} at {width} x {height} on {}, {} frames\n    median       p99       CPU  ms on the GPU, and of recording on the CPU\n",
         m.scene, m.adapter, m.frames
     );
-    let mut line = |values: &[f64], name: &str| {
+    let mut line = |values: &[f64], record: &[f64], name: &str| {
         let (median, p99) = (shown(quantile(values, 0.5)), shown(quantile(values, 0.99)));
-        _ = writeln!(text, "{median:>10}{p99:>10}  {name}");
+        let record = quantile(record, 0.5).map_or_else(String::new, |ms| format!("{ms:.4}"));
+        _ = writeln!(text, "{median:>10}{p99:>10}{record:>10}  {name}");
     };
     for pass in &m.passes {
         match &pass.timed_with {
-            Some(with) => line(&[], &format!("{} (in the time of {with})", pass.path)),
-            None => line(&pass.gpu_ms, &pass.path),
+            Some(with) => line(&[], &pass.record_ms, &format!("{} (in the time of {with})", pass.path)),
+            None => line(&pass.gpu_ms, &pass.record_ms, &pass.path),
         }
     }
-    line(&m.gpu_ms, "all passes");
-    line(&m.encode_ms, "encoding, on the CPU");
-    line(&m.submit_ms, "submitting, on the CPU");
+    line(&m.gpu_ms, &[], "all passes");
+    line(&m.encode_ms, &[], "encoding, on the CPU");
+    line(&m.submit_ms, &[], "submitting, on the CPU");
     let c = &m.counters;
     _ = writeln!(
         text,
@@ -49,6 +50,7 @@ pub(super) fn table(m: &Measured, comparison: Option<&Comparison>) -> String {
         let value = statistic.value.map_or_else(|| "no value".to_owned(), |value| value.to_string());
         _ = writeln!(text, "{}: {value}", statistic.path);
     }
+    text.push_str(&super::changes::text(&m.changes));
     if let Some(comparison) = comparison {
         text.push_str(&comparison.text());
     }

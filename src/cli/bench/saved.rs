@@ -14,7 +14,10 @@ const VERSION: u64 = 1;
 
 pub(super) fn json(m: &Measured, comparison: Option<&Comparison>) -> Value {
     let times = |values: &[f64]| json!({"median_ms": quantile(values, 0.5), "p99_ms": quantile(values, 0.99), "samples_ms": values});
-    let pass = |pass: &PassTimes| json!({"pass": pass.path, "gpu": times(&pass.gpu_ms), "timed_with": pass.timed_with});
+    let pass = |pass: &PassTimes| {
+        let (gpu, record) = (times(&pass.gpu_ms), times(&pass.record_ms));
+        json!({"pass": pass.path, "gpu": gpu, "record": record, "timed_with": pass.timed_with})
+    };
     let mut value = json!({
         "version": VERSION,
         "scene": m.scene,
@@ -39,6 +42,7 @@ pub(super) fn json(m: &Measured, comparison: Option<&Comparison>) -> Value {
             "lower_bound_bytes": m.memory.lower_bound_bytes,
         },
         "statistics": m.statistics.iter().map(|s| (s.path.clone(), json!(s.value))).collect::<BTreeMap<_, _>>(),
+        "changes": super::changes::json(&m.changes),
     });
     if let Some(comparison) = comparison {
         value["comparison"] = comparison.json();

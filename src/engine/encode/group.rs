@@ -62,7 +62,9 @@ impl Runner {
         let is_timed = can_be_timed(variant, self.timing.times_encoders());
         let joins = recorder.is_computing() && super::is_dispatch(variant);
         let pair = self.timing.mark(index, is_timed, joins);
+        let began = self.timing.clock();
         self.record(recorder, index, key, pair);
+        self.timing.recorded(index, began);
     }
 
     fn encode_draws(&mut self, recorder: &mut Recorder<'_>, group: impl Iterator<Item = usize> + Clone) {
@@ -71,8 +73,10 @@ impl Runner {
             let pair = self.timing.mark(index, true, nth > 0);
             first = first.or(pair);
         }
+        let (leader, began) = (group.clone().next(), self.timing.clock());
         let mut encoding = self.encoding(recorder, first);
         draw::encode(&mut encoding, group.filter_map(|index| self.part(index)));
+        leader.into_iter().for_each(|index| self.timing.recorded(index, began));
     }
 
     fn part(&self, index: usize) -> Option<draw::Part<'_>> {

@@ -69,6 +69,11 @@ impl<'a> Recorder<'a> {
         self.commands.encoder()
     }
 
+    /// Whether it submits what it records.
+    pub fn is_own(&self) -> bool {
+        matches!(self.commands, Commands::Own(_))
+    }
+
     /// Whether the next dispatch joins those before it.
     pub fn is_computing(&self) -> bool {
         self.compute.is_some()
