@@ -1,6 +1,7 @@
 //! The engine carries out plans as they say, read back from a real device.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
+mod bad_input;
 mod compute;
 mod distance;
 mod draw;
@@ -73,6 +74,9 @@ fn main() -> ExitCode {
         embed::two_graphs_do_not_write_one_texture,
         embed::instances_share_pipelines_and_inputs,
         embed::the_smallest_and_the_largest_sizes_work,
+        bad_input::a_parameter_changed_a_thousand_times_in_a_frame,
+        bad_input::shipped_graphs_draw_one_pixel,
+        bad_input::shipped_graphs_at_the_largest_size,
         meshes::bodies_stand_where_the_scene_says,
         meshes::fronts_stay_fronts,
         meshes::tags_and_values_and_computed_bodies,
