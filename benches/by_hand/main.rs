@@ -69,7 +69,8 @@ fn run(engine: &mut Engine, case: &Case, frames: usize) -> [Vec<Took>; 3] {
         for turn in 0..3 {
             let side = (turn + nth) % 3;
             let gpu = engine.gpu();
-            let (mut encode, mut submit) = (0.0, 0.0);
+            let mut encode;
+            let mut submit = 0.0;
             if side == 2 {
                 let time = cases::seconds(nth);
                 let frame =

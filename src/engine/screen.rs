@@ -15,6 +15,16 @@ pub struct Screen {
     pipeline: wgpu::RenderPipeline,
     layout: wgpu::BindGroupLayout,
     shown: Option<wgpu::Texture>,
+    /// For the texture that was taken last, and the one that is shown.
+    bound: Option<Bound>,
+}
+
+#[derive(Debug)]
+struct Bound {
+    source: wgpu::Texture,
+    shown: wgpu::Texture,
+    group: wgpu::BindGroup,
+    target: wgpu::TextureView,
 }
 
 impl Screen {
@@ -39,7 +49,7 @@ impl Screen {
             (pipeline(device, &layout), layout)
         });
         let (pipeline, layout) = made.map_err(|e| refused(&e))?;
-        Ok(Self { pipeline, layout, shown: None })
+        Ok(Self { pipeline, layout, shown: None, bound: None })
     }
 
     /// The encoded picture, `Rgba8Unorm`; absent before the first.
@@ -57,16 +67,20 @@ impl Screen {
         let size = wgpu::Extent3d { width: source.width(), height: source.height(), depth_or_array_layers: 1 };
         let kept = self.shown.take().filter(|shown| shown.size() == size);
         let is_new = kept.is_none();
-        let shown = errors::scoped(gpu, || {
-            let shown = kept.unwrap_or_else(|| texture(gpu.device(), size));
-            self.encode(gpu, source, &shown);
-            shown
+        let bound = self.bound.take().filter(|b| b.source == *source && kept.as_ref() == Some(&b.shown));
+        let bound = errors::scoped(gpu, || {
+            let bound =
+                bound.unwrap_or_else(|| self.bind(gpu, source, kept.unwrap_or_else(|| texture(gpu.device(), size))));
+            self.encode(gpu, &bound);
+            bound
         });
-        self.shown = Some(shown.map_err(|e| refused(&e))?);
+        let bound = bound.map_err(|e| refused(&e))?;
+        self.shown = Some(bound.shown.clone());
+        self.bound = Some(bound);
         Ok(is_new)
     }
 
-    fn encode(&self, gpu: &Gpu, source: &wgpu::Texture, target: &wgpu::Texture) {
+    fn bind(&self, gpu: &Gpu, source: &wgpu::Texture, shown: wgpu::Texture) -> Bound {
         let view = |texture: &wgpu::Texture| {
             texture.create_view(&wgpu::TextureViewDescriptor {
                 dimension: Some(wgpu::TextureViewDimension::D2),
@@ -83,12 +97,15 @@ impl Screen {
                 resource: wgpu::BindingResource::TextureView(&view(source)),
             }],
         });
-        let target = view(target);
+        Bound { source: source.clone(), target: view(&shown), shown, group }
+    }
+
+    fn encode(&self, gpu: &Gpu, bound: &Bound) {
         let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("screen"),
             color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                view: &target,
+                view: &bound.target,
                 depth_slice: None,
                 resolve_target: None,
                 ops: wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::BLACK), store: wgpu::StoreOp::Store },
@@ -96,7 +113,7 @@ impl Screen {
             ..wgpu::RenderPassDescriptor::default()
         });
         pass.set_pipeline(&self.pipeline);
-        pass.set_bind_group(0, &group, &[]);
+        pass.set_bind_group(0, &bound.group, &[]);
         pass.draw(0..3, 0..1);
         drop(pass);
         gpu.queue().submit([encoder.finish()]);

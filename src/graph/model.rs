@@ -201,6 +201,7 @@ pub struct Resource {
 }
 
 #[derive(Clone, Debug)]
+#[expect(clippy::large_enum_variant, reason = "a few of a graph, and never one of a frame")]
 pub enum ResourceKind {
     Texture {
         format: Sp<TextureFormat>,
@@ -294,6 +295,7 @@ pub enum NodeKind {
 
 /// What a shader's variable, a uniform member or an override gets.
 #[derive(Clone, Debug)]
+#[expect(clippy::large_enum_variant, reason = "a few of a graph, and never one of a frame")]
 pub enum Bound {
     /// A name of a thing, or an expression.
     Expr(Expr),
@@ -326,6 +328,7 @@ pub struct Compute {
 
 /// How many threads or workgroups.
 #[derive(Clone, Debug)]
+#[expect(clippy::large_enum_variant, reason = "a few of a graph, and never one of a frame")]
 pub enum Extent {
     /// Threads over the texels of a view.
     Texel(View),

@@ -7,7 +7,7 @@ use wgpu_types::{Features, Limits, TextureUsages};
 
 use super::inputs::Input;
 use super::load::{COLOR, Content};
-use super::meshes::Meshes;
+use super::meshes::{Meshes, Standing};
 use super::sequence::Track;
 use super::state::Held;
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
@@ -28,8 +28,8 @@ pub struct Session {
     pub(super) content: Option<Content>,
     /// Room that counted buffers turned out to need, by instance path.
     pub(super) capacities: BTreeMap<String, u64>,
-    /// The time in seconds at which moving meshes stand.
-    pub(super) moved_s: Option<f64>,
+    /// Where moving meshes stand.
+    pub(super) standing: Standing,
     /// What was pointed at while pictures were shown.
     pub(super) pointed: PointerPath,
 }
@@ -75,7 +75,7 @@ impl Session {
             present: None,
             content: None,
             capacities: BTreeMap::new(),
-            moved_s: None,
+            standing: Standing::default(),
             pointed: PointerPath::default(),
         }
     }
@@ -149,7 +149,7 @@ impl Session {
             }
         };
         let before = self.content.take();
-        self.moved_s = None;
+        self.standing.at_s = None;
         let uploaded =
             upload(&self.engine, &mut graph, &content.inputs, before.as_ref().map(|c| &c.inputs)).and_then(|()| {
                 let before = before.as_ref().map(|c| &c.present_inputs);

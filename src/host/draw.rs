@@ -99,8 +99,8 @@ impl Session {
                 live: &|name, step| live.at(name, step),
                 only: None,
             };
-            let (inputs, camera, moved_s) = (&content.inputs, &content.camera, &mut self.moved_s);
-            Moving { inputs, camera, moved_s }.run(&self.engine, runner, &frame)?;
+            let (inputs, camera, standing) = (&content.inputs, &content.camera, &mut self.standing);
+            Moving { inputs, camera, standing }.run(&self.engine, runner, &frame, Runner::advance)?;
         }
         Ok(())
     }
@@ -122,7 +122,7 @@ impl Session {
             live: &|name, step| live.at(name, step),
             only: None,
         };
-        present.run(&self.engine, &frame).map(|_| ())
+        present.advance(&self.engine, &frame)
     }
 
     /// Whether counted buffers need more room than they had, which they get.

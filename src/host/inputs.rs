@@ -18,7 +18,6 @@ use crate::format::TextureFormat;
 use crate::graph::model::{Graph, Input as Declared, InputDefault, InputKind};
 use crate::graph::rows::Row;
 use crate::graph::value::Value;
-use crate::plan::fields::{self, FieldType};
 use crate::plan::model::{InputInfo, Texture};
 use crate::scene::image::Image;
 use crate::scene::sequence::Pattern;
@@ -330,17 +329,6 @@ impl Input {
                 attributes: particles.set.attributes.iter().map(|a| (a.name.clone(), a.components as u32)).collect(),
             },
         }
-    }
-
-    /// The names of its live fields.
-    pub fn fields(&self) -> impl Iterator<Item = &'static str> {
-        let table: &[(&'static str, FieldType)] = match self {
-            Input::Camera => fields::CAMERA,
-            Input::Light(_) => fields::LIGHT,
-            Input::Pointer(_) => fields::POINTER,
-            _ => &[],
-        };
-        table.iter().map(|(name, _)| *name)
     }
 
     /// The live value of a field that is the same for all of a frame.

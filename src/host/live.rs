@@ -7,7 +7,7 @@ use super::inputs::Input;
 use super::live_values::LiveValues;
 use super::moving::Moving;
 use crate::diagnostic::{Diagnostic, Diagnostics};
-use crate::engine::{Frame, Report, Screen, TextureData};
+use crate::engine::{Engine, Frame, Report, Runner, Screen, TextureData};
 use crate::plan::model::{ObjectRef, Plan};
 use crate::scene::Camera;
 
@@ -52,6 +52,23 @@ impl Session {
     /// # Errors
     /// If nothing was built, or the device refuses something or is lost.
     pub fn submit(&mut self, live: &Live<'_>) -> Result<Report, Diagnostics> {
+        self.frame(live, Runner::run)
+    }
+
+    /// The same without a report, which [`Session::answers`] has once the GPU is done: a frame in
+    /// which nothing new comes up allocates nothing.
+    ///
+    /// # Errors
+    /// As [`Session::submit`].
+    pub fn advance(&mut self, live: &Live<'_>) -> Result<(), Diagnostics> {
+        self.frame(live, Runner::advance)
+    }
+
+    fn frame<T>(
+        &mut self,
+        live: &Live<'_>,
+        run: impl FnOnce(&mut Runner, &Engine, &Frame<'_>) -> Result<T, Diagnostics>,
+    ) -> Result<T, Diagnostics> {
         let (Some(content), Some(runner)) = (&mut self.content, &mut self.graph) else { return Err(nothing().into()) };
         content.camera = live.camera;
         let values = LiveValues::new(content, &content.inputs, &self.pointed, live.time_s);
@@ -63,8 +80,8 @@ impl Session {
             live: &|name, step| values.at(name, step),
             only: live.only,
         };
-        let (inputs, camera, moved_s) = (&content.inputs, &content.camera, &mut self.moved_s);
-        Moving { inputs, camera, moved_s }.run(&self.engine, runner, &frame)
+        let (inputs, camera, standing) = (&content.inputs, &content.camera, &mut self.standing);
+        Moving { inputs, camera, standing }.run(&self.engine, runner, &frame, run)
     }
 
     /// Presents what the graph made last, and puts it on a screen. Tells whether the screen's
@@ -90,7 +107,7 @@ impl Session {
             live: &|name, step| values.at(name, step),
             only: None,
         };
-        present.run(&self.engine, &frame)?;
+        present.advance(&self.engine, &frame)?;
         let picture = present.plan().outputs.first().map(|o| o.object).ok_or_else(nothing)?;
         Ok(screen.take(self.engine.gpu(), present, picture)?)
     }

@@ -1,5 +1,5 @@
 //! What cameras, lights and pointers say while a frame runs: the same for all of it, but for what steps
-//! see at times of their own.
+//! see at times of their own. Nothing is kept: a frame asks once for each name that its graph reads.
 
 use std::collections::BTreeMap;
 
@@ -7,12 +7,12 @@ use super::inputs::Input;
 use super::load::Content;
 use crate::engine::StepInfo;
 use crate::graph::value::Value;
-use crate::scene::PointerPath;
+use crate::scene::{Camera, PointerPath};
 
 pub(super) struct LiveValues<'a> {
     inputs: &'a BTreeMap<String, Input>,
-    /// By `input.field`.
-    values: BTreeMap<String, Value>,
+    camera: &'a Camera,
+    viewport: [u32; 2],
     /// What was pointed at while pictures were shown; in place of the scene's pointers if there is any.
     pointed: &'a PointerPath,
     time_s: f64,
@@ -25,25 +25,17 @@ impl<'a> LiveValues<'a> {
         pointed: &'a PointerPath,
         time_s: f64,
     ) -> Self {
-        let mut values = BTreeMap::new();
-        for (name, input) in inputs {
-            for field in input.fields() {
-                if let Some(value) = input.field(field, &content.camera, content.viewport) {
-                    values.insert(format!("{name}.{field}"), value);
-                }
-            }
-        }
-        Self { inputs, values, pointed, time_s }
+        Self { inputs, camera: &content.camera, viewport: content.viewport, pointed, time_s }
     }
 
     /// A field's value in the frame, or in a step of it.
     pub fn at(&self, name: &str, step: Option<&StepInfo>) -> Option<Value> {
-        if let Some(value) = self.values.get(name) {
-            return Some(value.clone());
-        }
         let (input, field) = name.split_once('.')?;
-        let Input::Pointer(path) = self.inputs.get(input)? else { return None };
-        let path = if self.pointed.is_empty() { path } else { self.pointed };
+        let path = match self.inputs.get(input)? {
+            Input::Pointer(path) if self.pointed.is_empty() => path,
+            Input::Pointer(_) => self.pointed,
+            input => return input.field(field, self.camera, self.viewport),
+        };
         path.field(field, step.map_or(self.time_s, |step| step.time))
     }
 }

@@ -14,7 +14,7 @@ use crate::plan::packing;
 use crate::scene::MeshEntry;
 use crate::scene::Playing;
 use crate::scene::image::Stored;
-use crate::scene::meshes::{AlphaMode, Material, Model, Primitive, TextureUse, UvTransform, is_mirrored};
+use crate::scene::meshes::{AlphaMode, Material, Model, Pose, Primitive, TextureUse, UvTransform, is_mirrored};
 use crate::shader::reflect::Type;
 
 /// Bodies ready to be handed to a device.
@@ -36,6 +36,16 @@ pub struct Meshes {
 
 /// At how many times of its animation a body is looked at for its bounds.
 const POSES: u32 = 64;
+
+/// Where bodies that move stand, with the memory that it takes to tell.
+#[derive(Debug, Default)]
+pub(super) struct Standing {
+    /// The time in seconds at which they stand on the device.
+    pub at_s: Option<f64>,
+    poses: Vec<Pose>,
+    /// Items of `x.instances`.
+    pub bytes: Vec<u8>,
+}
 
 #[derive(Debug, Default)]
 struct Vertices {
@@ -275,15 +285,28 @@ impl Meshes {
 
     /// Items of `x.instances` at a time in seconds.
     pub(super) fn instances(&self, time_s: f64) -> Vec<u8> {
-        let poses: Vec<Vec<Mat4>> = self.entries.iter().map(|entry| entry.pose(time_s)).collect();
-        let mut bytes = Vec::with_capacity(self.instances.len() * INSTANCE_BYTES as usize);
+        let mut standing = Standing::default();
+        self.instances_into(time_s, &mut standing);
+        standing.bytes
+    }
+
+    /// The same into memory that is there.
+    pub(super) fn instances_into(&self, time_s: f64, standing: &mut Standing) {
+        let Standing { poses, bytes, .. } = standing;
+        if poses.len() < self.entries.len() {
+            poses.resize_with(self.entries.len(), Pose::default);
+        }
+        for (entry, pose) in self.entries.iter().zip(&mut *poses) {
+            entry.pose_into(time_s, pose);
+        }
+        bytes.clear();
+        bytes.reserve(self.instances.len() * INSTANCE_BYTES as usize);
         for instance in &self.instances {
-            let matrix = poses[instance.entry][instance.node].to_cols_array();
+            let matrix = poses[instance.entry].world[instance.node].to_cols_array();
             bytes.extend_from_slice(bytemuck::bytes_of(&matrix));
             let words = [instance.body, instance.first_triangle, instance.triangles, instance.material];
             bytes.extend_from_slice(bytemuck::bytes_of(&words));
         }
-        bytes
     }
 
     /// A value of each body, as a shader's type wants it.
@@ -359,12 +382,18 @@ impl Entry {
 
     /// Body from node, for each node, at a time of the scene.
     fn pose(&self, time_s: f64) -> Vec<Mat4> {
+        let mut pose = Pose::default();
+        self.pose_into(time_s, &mut pose);
+        pose.world
+    }
+
+    fn pose_into(&self, time_s: f64, pose: &mut Pose) {
         let duration_s = self.animation.and_then(|a| self.model.animations.get(a)).map_or(0.0, |a| a.duration_s);
         let mut at_s = time_s + self.start_s;
         if self.loops && duration_s > 0.0 {
             at_s = at_s.rem_euclid(f64::from(duration_s));
         }
-        self.model.pose(self.animation, at_s)
+        self.model.pose_into(self.animation, at_s, pose);
     }
 }
 
@@ -475,9 +504,8 @@ mod tests {
     #[test]
     fn textures_turn_counter_clockwise_as_they_are_seen() {
         let quarter = UvTransform { rotation: std::f32::consts::FRAC_PI_2, ..UvTransform::default() };
-        let Value::Vector(m) = transform(&quarter) else { panic!("no matrix") };
         // v grows downwards: u = (1, 0) turned by a quarter points up, to (0, -1).
-        let up: Vec<f64> = m[..2].iter().filter_map(Value::as_f64).collect();
+        let up: Vec<f64> = transform(&quarter).numbers().take(2).collect();
         assert!(up[0].abs() < 1e-6 && (up[1] + 1.0).abs() < 1e-6, "{up:?}");
     }
 }

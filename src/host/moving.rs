@@ -4,25 +4,35 @@
 use std::collections::BTreeMap;
 
 use super::inputs::Input;
+use super::meshes::Standing;
 use crate::diagnostic::{Diagnostic, Diagnostics};
-use crate::engine::{Engine, Frame, Report, Runner};
+use crate::engine::{Engine, Frame, Runner};
 use crate::plan::meshes::MeshBuffer;
 use crate::plan::model::{Object, ObjectRef, Origin, Plan};
 use crate::scene::Camera;
 
-/// Inputs by name, and the time in seconds at which those of them that move stand.
+/// Inputs by name, and where those of them that move stand.
 pub(super) struct Moving<'a> {
     pub inputs: &'a BTreeMap<String, Input>,
     pub camera: &'a Camera,
-    pub moved_s: &'a mut Option<f64>,
+    pub standing: &'a mut Standing,
 }
 
 impl Moving<'_> {
     /// Runs a frame. Steps that see meshes move run one at a time, each with these where they are
-    /// then; all others run as the engine does them.
-    pub fn run(&mut self, engine: &Engine, runner: &mut Runner, frame: &Frame<'_>) -> Result<Report, Diagnostics> {
-        let mut left = frame.steps.to_vec();
-        for index in self.seeing_steps(runner.plan()) {
+    /// then; all others run as the engine does them, by `run`.
+    pub fn run<T>(
+        &mut self,
+        engine: &Engine,
+        runner: &mut Runner,
+        frame: &Frame<'_>,
+        run: impl FnOnce(&mut Runner, &Engine, &Frame<'_>) -> Result<T, Diagnostics>,
+    ) -> Result<T, Diagnostics> {
+        let seeing = self.seeing_steps(runner.plan());
+        // Most see none, and their frames allocate nothing.
+        let mut left = if seeing.is_empty() { Vec::new() } else { frame.steps.to_vec() };
+        for index in &seeing {
+            let index = *index;
             let due = left.get_mut(index).map_or(0, std::mem::take);
             for _ in 0..due {
                 self.step(engine, runner, frame, index)?;
@@ -30,7 +40,7 @@ impl Moving<'_> {
         }
         self.move_to(engine, runner, frame.time)?;
         self.sort(runner, frame.time);
-        runner.run(engine, &Frame { steps: &left, ..*frame })
+        run(runner, engine, &Frame { steps: if seeing.is_empty() { frame.steps } else { &left }, ..*frame })
     }
 
     /// One step of `plan.steps[index]`, with what comes before it in the program.
@@ -50,8 +60,7 @@ impl Moving<'_> {
         let mut one = vec![0; runner.plan().steps.len()];
         one[index] = 1;
         self.move_to(engine, runner, time_s)?;
-        runner.run(engine, &Frame { steps: &one, only: Some(&only), ..*frame })?;
-        Ok(())
+        runner.advance(engine, &Frame { steps: &one, only: Some(&only), ..*frame })
     }
 
     /// The `Steps` at a rate in which a pass reads where animated meshes are, in program order.
@@ -78,7 +87,7 @@ impl Moving<'_> {
     /// Puts what time moves where it is at a time in seconds.
     fn move_to(&mut self, engine: &Engine, runner: &mut Runner, time_s: f64) -> Result<(), Diagnostic> {
         // While time stands, nothing is new.
-        if self.moved_s.replace(time_s) == Some(time_s) {
+        if self.standing.at_s.replace(time_s) == Some(time_s) {
             return Ok(());
         }
         for id in 0..runner.plan().objects.len() {
@@ -86,7 +95,8 @@ impl Moving<'_> {
             if self.is_moving(object)
                 && let Some(Input::Meshes(meshes)) = object.origin.input().and_then(|name| self.inputs.get(name))
             {
-                runner.upload_buffer(engine, id, &meshes.instances(time_s))?;
+                meshes.instances_into(time_s, self.standing);
+                runner.upload_buffer(engine, id, &self.standing.bytes)?;
             }
         }
         Ok(())

@@ -171,7 +171,7 @@ fn convert(value: &Value, kind: &ParamKind) -> Result<Value, String> {
         }
         (_, Value::Vector(v)) => {
             let (low, high) = components(kind);
-            let numbers: Option<Vec<f64>> = v.iter().map(Value::as_f64).collect();
+            let numbers: Option<Vec<f64>> = v.iter().map(|part| part.as_f64()).collect();
             if low == 1 || !(low..=high).contains(&v.len()) {
                 return Err(wrong());
             }
@@ -184,10 +184,11 @@ fn convert(value: &Value, kind: &ParamKind) -> Result<Value, String> {
 fn within(value: &Value, param: &Param) -> Result<(), String> {
     let bound = |bound: &Option<crate::graph::model::Sp<Value>>, index: usize| {
         let bound = &bound.as_ref()?.value;
-        let components = bound.components();
-        components.get(index).or(components.first().filter(|_| components.len() == 1))?.as_f64()
+        let mut components = bound.components();
+        let place = if components.len() == 1 { 0 } else { index };
+        components.nth(place)?.as_f64()
     };
-    for (index, number) in value.components().iter().enumerate() {
+    for (index, number) in value.components().enumerate() {
         let Some(number) = number.as_f64() else { continue };
         if let Some(min) = bound(&param.min, index).filter(|min| number < *min) {
             return Err(format!("{value} is below the least value, {min}"));

@@ -328,7 +328,7 @@ fn bit(rows: &[u64], words: usize, row: usize, n: usize) -> bool {
 fn is_same(a: &Value, b: &Value) -> bool {
     match (a, b) {
         (Value::Float(a), Value::Float(b)) => a.to_bits() == b.to_bits(),
-        (Value::Vector(a), Value::Vector(b)) => a.len() == b.len() && a.iter().zip(b).all(|(a, b)| is_same(a, b)),
+        (Value::Vector(a), Value::Vector(b)) => a.has_bits_of(b),
         _ => a == b,
     }
 }

@@ -1,7 +1,7 @@
 //! Values as bytes of WGSL types, for uniforms and tables. No GPU here.
 
 use crate::graph::rows::Row;
-use crate::graph::value::Value;
+use crate::graph::value::{Value, Vector};
 use crate::shader::reflect::{Scalar, Type};
 
 /// Writes a value as a type has it in memory, at the start of `out`.
@@ -26,14 +26,15 @@ pub fn encode(value: &Value, ty: &Type, out: &mut [u8]) -> Result<(), String> {
             matrix(value.components(), *columns, *rows, *scalar, out).ok_or_else(mismatch)
         }
         Type::Array { element, count: Some(count), stride } => {
-            let parts = value.components();
+            let mut parts = value.components();
             let width = parts.len() / (*count).max(1) as usize;
             if width == 0 || width * *count as usize != parts.len() {
                 return Err(mismatch());
             }
-            for (part, place) in parts.chunks(width).zip(out.chunks_mut((*stride).max(1) as usize)) {
-                let part = if width == 1 { part[0].clone() } else { Value::Vector(part.to_vec()) };
-                encode(&part, element, place)?;
+            for place in out.chunks_mut((*stride).max(1) as usize).take(*count as usize) {
+                let part =
+                    if width == 1 { parts.next() } else { Vector::of(parts.by_ref().take(width)).map(Value::Vector) };
+                encode(&part.ok_or_else(mismatch)?, element, place)?;
             }
             Ok(())
         }
@@ -64,25 +65,28 @@ pub fn rows(rows: &[Row], item: Option<&Type>, stride: u32) -> Result<Vec<u8>, S
     Ok(bytes)
 }
 
-fn vector(parts: &[Value], components: u32, scalar: Scalar, out: &mut [u8]) -> Option<()> {
-    let one = Value::Int(1);
-    let opaque = (parts.len() == 3 && components == 4).then_some(&one);
+fn vector(parts: impl ExactSizeIterator<Item = Value>, components: u32, scalar: Scalar, out: &mut [u8]) -> Option<()> {
+    let opaque = (parts.len() == 3 && components == 4).then_some(Value::Int(1));
     if opaque.is_none() && parts.len() != components as usize {
         return None;
     }
-    let step = scalar.size() as usize;
-    parts.iter().chain(opaque).zip(out.chunks_mut(step)).try_for_each(|(part, place)| scalar_bytes(part, scalar, place))
+    let places = out.chunks_mut(scalar.size() as usize);
+    parts.chain(opaque).zip(places).try_for_each(|(part, place)| scalar_bytes(&part, scalar, place))
 }
 
-fn matrix(parts: &[Value], columns: u32, rows: u32, scalar: Scalar, out: &mut [u8]) -> Option<()> {
+fn matrix(
+    mut parts: impl ExactSizeIterator<Item = Value>,
+    columns: u32,
+    rows: u32,
+    scalar: Scalar,
+    out: &mut [u8],
+) -> Option<()> {
     if parts.len() != (columns * rows) as usize {
         return None;
     }
     let stride = scalar.size() as usize * if rows == 2 { 2 } else { 4 };
-    parts
-        .chunks(rows as usize)
-        .zip(out.chunks_mut(stride))
-        .try_for_each(|(column, place)| vector(column, rows, scalar, place))
+    let mut columns = out.chunks_mut(stride).take(columns as usize);
+    columns.try_for_each(|column| vector(parts.by_ref().take(rows as usize), rows, scalar, column))
 }
 
 fn scalar_bytes(value: &Value, scalar: Scalar, out: &mut [u8]) -> Option<()> {

@@ -154,7 +154,7 @@ mod tests {
 
     fn numbers(value: Option<Value>) -> Vec<f64> {
         let value = value.expect("a field");
-        value.components().iter().filter_map(Value::as_f64).collect()
+        value.numbers().collect()
     }
 
     fn matrix_of(camera: &Camera, name: &str) -> DMat4 {

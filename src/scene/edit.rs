@@ -53,8 +53,7 @@ pub fn written(value: &Value) -> String {
         Value::Float(x) => format!("{x:?}"),
         Value::Word(word) => format!("{word:?}"),
         Value::Vector(_) => {
-            let numbers: Vec<String> =
-                value.components().iter().filter_map(Value::as_f64).map(|x| format!("{x:?}")).collect();
+            let numbers: Vec<String> = value.numbers().map(|x| format!("{x:?}")).collect();
             format!("({})", numbers.join(", "))
         }
     }

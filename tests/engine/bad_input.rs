@@ -61,7 +61,7 @@ pub fn a_parameter_changed_a_thousand_times_in_a_frame(engine: &mut Engine) {
     };
     let first = plan(engine, 0, 1);
     let mut runner = prepare(engine, first);
-    let mut settle = |engine: &Engine, runner: &mut Runner| {
+    let settle = |engine: &Engine, runner: &mut Runner| {
         let report = runner.run(engine, &frame()).unwrap_or_else(|d| panic!("{d:?}"));
         runner.finish(engine).unwrap();
         engine.gpu().poll();

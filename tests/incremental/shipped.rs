@@ -223,7 +223,7 @@ fn positions(plan: &Plan, id: ObjectId, request: &Request, seed: u64) -> Option<
 
 /// Another value that the parameter may have.
 fn other(param: &Param, numbers: &mut Numbers) -> Option<Value> {
-    let number = |v: &Option<Value>| v.as_ref().and_then(|v| v.components().first()?.as_f64());
+    let number = |v: &Option<Value>| v.as_ref().and_then(|v| v.components().next()?.as_f64());
     let (min, max) = (number(&param.min), number(&param.max));
     let part = f64::from(1 + numbers.below(6)) / 8.0;
     let between = |now: f64| match (min, max) {
@@ -238,7 +238,7 @@ fn other(param: &Param, numbers: &mut Numbers) -> Option<Value> {
         (ParamKind::Choice(words), Value::Word(now)) => {
             Value::Word(words.iter().map(|w| &w.value).find(|word| *word != now)?.clone())
         }
-        (_, Value::Vector(now)) => Value::vec(now.iter().filter_map(Value::as_f64).map(|x| x * 0.75 + 0.05)),
+        (_, Value::Vector(now)) => Value::vec(now.iter().filter_map(|x| x.as_f64()).map(|x| x * 0.75 + 0.05)),
         _ => return None,
     };
     (value != param.value).then_some(value)

@@ -18,9 +18,9 @@ impl Scope for Names {
             "radius" | "particles.radius" => Value::Float(0.25),
             "streaming" => Value::Bool(true),
             "weights" => Value::Word("distance".into()),
-            "map" => Value::Vector(vec![Value::Int(512), Value::Int(100)]),
+            "map" => Value::ints([512, 100]),
             "particles.max" => Value::vec([1.0, 2.0, 4.0]),
-            "viewport" => Value::Vector(vec![Value::Int(640), Value::Int(480)]),
+            "viewport" => Value::ints([640, 480]),
             "time" | "camera.eye" => {
                 return Ok(Lookup::Live(Expr { kind: ExprKind::Name(path.replace('.', "_")), span }));
             }
@@ -35,7 +35,7 @@ impl Scope for Names {
 
     fn call_on_name(&self, function: Function, path: &str, span: Span) -> Result<Lookup, Diagnostic> {
         let value = match (function, path) {
-            (Function::Size, "z") => Value::Vector(vec![Value::Int(320), Value::Int(200)]),
+            (Function::Size, "z") => Value::ints([320, 200]),
             (Function::Count, "sorted") => Value::Int(1000),
             (Function::Has, "color") => Value::Bool(false),
             _ => {

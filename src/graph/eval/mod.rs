@@ -112,7 +112,9 @@ pub fn fold(expr: &Expr, scope: &dyn Scope) -> Result<Expr, Diagnostic> {
         ExprKind::Vector(parts) => {
             let parts = fold_all(parts, scope)?;
             match literals(&parts) {
-                Some(values) => ExprKind::Literal(ops::vector(values).map_err(|m| wrong(m, expr.span, &refs(&parts)))?),
+                Some(values) => ExprKind::Literal(
+                    ops::vector(values.into_iter().map(Ok)).map_err(|m| wrong(m, expr.span, &refs(&parts)))?,
+                ),
                 None => ExprKind::Vector(parts),
             }
         }
@@ -141,12 +143,16 @@ pub fn eval_live(expr: &Expr, live: &dyn Fn(&str) -> Option<Value>) -> Option<Va
         ExprKind::Call(function, _) if function.takes_name() => None,
         ExprKind::Item(..) => None,
         ExprKind::Call(function, args) => {
-            let values: Option<Vec<Value>> = args.iter().map(|arg| eval_live(arg, live)).collect();
-            ops::call(*function, &values?).ok()
+            // Most have one or two: nothing is allocated for those while frames run.
+            match args.as_slice() {
+                [a] => ops::call(*function, &[eval_live(a, live)?]),
+                [a, b] => ops::call(*function, &[eval_live(a, live)?, eval_live(b, live)?]),
+                args => ops::call(*function, &args.iter().map(|arg| eval_live(arg, live)).collect::<Option<Vec<_>>>()?),
+            }
+            .ok()
         }
         ExprKind::Vector(parts) => {
-            let values: Option<Vec<Value>> = parts.iter().map(|part| eval_live(part, live)).collect();
-            ops::vector(values?).ok()
+            ops::vector(parts.iter().map(|part| eval_live(part, live).ok_or_else(String::new))).ok()
         }
     }
 }

@@ -4,7 +4,7 @@ use std::cmp::Ordering;
 
 use super::{a_kind, binary_sign, unary_sign};
 use crate::graph::expr::{Binary, Function, Unary};
-use crate::graph::value::Value;
+use crate::graph::value::{Value, Vector};
 
 type Made = Result<Value, String>;
 
@@ -15,7 +15,7 @@ pub(super) fn component(value: &Value, name: char) -> Made {
     let index = "xyzw".find(name);
     match value {
         Value::Vector(parts) => match index.and_then(|i| parts.get(i)) {
-            Some(part) => Ok(part.clone()),
+            Some(part) => Ok(part),
             None => Err(format!("{} has no component `{name}`", a_kind(value))),
         },
         _ => Err(format!("`.{name}` needs a vector, not {}", a_kind(value))),
@@ -110,7 +110,7 @@ fn finite(value: f64) -> Made {
 /// Applies to a scalar, or to each component.
 fn each(value: &Value, apply: impl Fn(&Value) -> Made) -> Made {
     match value {
-        Value::Vector(parts) => vector(parts.iter().map(apply).collect::<Result<_, _>>()?),
+        Value::Vector(parts) => vector(parts.iter().map(|part| apply(&part))),
         scalar => apply(scalar),
     }
 }
@@ -121,36 +121,34 @@ fn pairs(
     b: &Value,
     apply: impl Fn(&Value, &Value) -> Result<Value, Option<String>>,
 ) -> Result<Value, Option<String>> {
-    let (x, y) = (a.components(), b.components());
     match (a, b) {
-        (Value::Vector(_), Value::Vector(_)) if x.len() != y.len() => {
+        (Value::Vector(x), Value::Vector(y)) if x.len() != y.len() => {
             Err(Some(format!("vectors of {} and of {} components do not go together", x.len(), y.len())))
         }
-        (Value::Vector(_), _) | (_, Value::Vector(_)) => {
-            let count = x.len().max(y.len());
-            let at = |parts: &[Value], i: usize| parts[if parts.len() == 1 { 0 } else { i }].clone();
-            let parts: Result<Vec<Value>, _> = (0..count).map(|i| apply(&at(x, i), &at(y, i))).collect();
-            vector(parts?).map_err(Some)
-        }
+        (Value::Vector(x), Value::Vector(y)) => gather(x.iter().zip(y.iter()).map(|(x, y)| apply(&x, &y)), Some),
+        (Value::Vector(x), scalar) => gather(x.iter().map(|x| apply(&x, scalar)), Some),
+        (scalar, Value::Vector(y)) => gather(y.iter().map(|y| apply(scalar, &y)), Some),
         _ => apply(a, b),
     }
 }
 
 /// A vector of scalars of one kind; Int among Float becomes Float.
-pub(super) fn vector(parts: Vec<Value>) -> Made {
-    if let Some(odd) = parts.iter().find(|part| matches!(part, Value::Vector(_) | Value::Word(_))) {
-        return Err(format!("a component of a vector is a number or a Bool, not {}", a_kind(odd)));
+pub(super) fn vector(parts: impl IntoIterator<Item = Made>) -> Made {
+    gather(parts, |error| error)
+}
+
+fn gather<E>(parts: impl IntoIterator<Item = Result<Value, E>>, wrong: impl Fn(String) -> E) -> Result<Value, E> {
+    let mut vector = Vector::default();
+    for part in parts {
+        let part = part?;
+        if matches!(part, Value::Vector(_) | Value::Word(_)) {
+            return Err(wrong(format!("a component of a vector is a number or a Bool, not {}", a_kind(&part))));
+        }
+        if vector.push(&part).is_none() {
+            return Err(wrong("the components of a vector are all numbers or all Bool".into()));
+        }
     }
-    let bools = parts.iter().filter(|part| matches!(part, Value::Bool(_))).count();
-    if bools != 0 && bools != parts.len() {
-        return Err("the components of a vector are all numbers or all Bool".into());
-    }
-    let has_float = parts.iter().any(|part| matches!(part, Value::Float(_)));
-    let promote = |part: Value| match part {
-        Value::Int(i) if has_float => Value::Float(i as f64),
-        other => other,
-    };
-    Ok(Value::Vector(parts.into_iter().map(promote).collect()))
+    Ok(Value::Vector(vector))
 }
 
 /// A function of values; the number of arguments was checked when it was read.
@@ -194,8 +192,8 @@ fn not_a_number(function: &str, value: &Value) -> String {
 }
 
 fn number_check(function: &str, value: &Value) -> Result<(), String> {
-    match value.components().iter().find(|part| part.as_f64().is_none()) {
-        Some(odd) => Err(not_a_number(function, odd)),
+    match value.components().find(|part| part.as_f64().is_none()) {
+        Some(odd) => Err(not_a_number(function, &odd)),
         None => Ok(()),
     }
 }
@@ -261,7 +259,7 @@ fn next_pow2(value: &Value) -> Made {
 
 /// Levels down to one texel: those of the longest edge.
 fn mip_count(value: &Value) -> Made {
-    let edges: Option<Vec<i64>> = value.components().iter().map(Value::as_int).collect();
+    let edges: Option<Vec<i64>> = value.components().map(|part| part.as_int()).collect();
     let longest = edges.ok_or_else(|| format!("`mip_count` takes whole numbers, not {}", a_kind(value)))?;
     match longest.into_iter().max() {
         Some(edge) if edge >= 1 => Ok(Value::Int(i64::from(edge.ilog2()) + 1)),

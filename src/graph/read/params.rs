@@ -133,7 +133,7 @@ fn check_range(d: &mut Decoder<'_>, param: &Param) {
         return;
     }
     let Some(default) = &param.default else { return };
-    let components = || default.value.components().iter().filter_map(Value::as_f64);
+    let components = || default.value.numbers();
     let low = param.min.as_ref().filter(|min| min.value.as_f64().is_some_and(|m| components().any(|x| x < m)));
     let high = param.max.as_ref().filter(|max| max.value.as_f64().is_some_and(|m| components().any(|x| x > m)));
     for (bound, word) in [(low, "min"), (high, "max")] {

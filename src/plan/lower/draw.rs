@@ -310,7 +310,7 @@ impl Lowering<'_> {
             draft.causes.add(&causes);
             for component in value.components() {
                 match component {
-                    crate::graph::value::Value::Int(n) => edges.push((*n, expr)),
+                    crate::graph::value::Value::Int(n) => edges.push((n, expr)),
                     _ => return Err(self.mistyped(s, expr, "whole pixels", &value)),
                 }
             }

@@ -199,7 +199,7 @@ impl Lowering<'_> {
             draft.causes.add(&causes);
             for component in value.components() {
                 match component {
-                    Value::Int(n) if *n >= 0 => counts.push(*n as u64),
+                    Value::Int(n) if n >= 0 => counts.push(n as u64),
                     Value::Int(n) => {
                         let message = format!("the number of {what} must be at least 0, and is {n}");
                         let diagnostic = fault(Code::OUT_OF_RANGE, message, expr.span, format!("this is {value}"));
@@ -211,7 +211,7 @@ impl Lowering<'_> {
                             .hint("say `floor(...)`, `ceil(...)` or `ceil_div(a, b)`");
                         return Err(traced(diagnostic, &self.scopes[s].trace));
                     }
-                    other => return Err(self.mistyped(s, expr, "a number", other)),
+                    other => return Err(self.mistyped(s, expr, "a number", &other)),
                 }
             }
         }

@@ -235,7 +235,7 @@ impl Lowering<'_> {
     fn builtin(&self, path: &str, span: Span) -> Option<Scalar> {
         if path == "viewport" {
             let [w, h] = self.request.viewport;
-            let value = Value::Vector(vec![Value::Int(i64::from(w)), Value::Int(i64::from(h))]);
+            let value = Value::ints([w, h].map(i64::from));
             let causes = Causes { viewport: true, ..Causes::default() };
             return Some(Scalar::caused(value, causes));
         }

@@ -72,7 +72,9 @@ impl Names<'_, '_> {
             return None;
         }
         Some(match eval::Scope::name(self, prefix, span) {
-            Ok(Lookup::Value(Value::Vector(parts))) if index < parts.len() => Ok(Lookup::Value(parts[index].clone())),
+            Ok(Lookup::Value(Value::Vector(parts))) if index < parts.len() => {
+                Ok(Lookup::Value(parts.get(index).unwrap_or(Value::Int(0))))
+            }
             Ok(_) => {
                 Err(Diagnostic::error(Code::UNKNOWN_NAME, format!("nothing is called `{path}`")).at(span, "unknown"))
             }
@@ -219,8 +221,7 @@ impl<'p> Lowering<'p> {
         };
         for (bound, low) in [(&param.min, true), (&param.max, false)] {
             let Some(limit) = bound.as_ref().and_then(|b| b.value.as_f64()) else { continue };
-            let outside =
-                fitted.components().iter().filter_map(Value::as_f64).any(|x| if low { x < limit } else { x > limit });
+            let outside = fitted.numbers().any(|x| if low { x < limit } else { x > limit });
             if outside {
                 let side = if low { "at least" } else { "at most" };
                 let message = format!("`{name}` must be {side} {limit}, and is {fitted}");
@@ -297,11 +298,8 @@ impl<'p> Lowering<'p> {
                 let causes = building.causes.clone();
                 match (f, &building.object.kind) {
                     (Function::Size, ObjectKind::Texture(t)) => {
-                        let mut size = vec![Value::Int(i64::from(t.width)), Value::Int(i64::from(t.height))];
-                        if t.is_3d {
-                            size.push(Value::Int(i64::from(t.layers)));
-                        }
-                        Ok((Value::Vector(size), causes))
+                        let size = [t.width, t.height].into_iter().chain(t.is_3d.then_some(t.layers));
+                        Ok((Value::ints(size.map(i64::from)), causes))
                     }
                     (Function::Count, ObjectKind::Buffer(b)) if b.counted => {
                         let message = format!("the count of `{path}` is known only on the GPU");
@@ -393,7 +391,7 @@ fn kind(kind: &ParamKind) -> String {
 pub(in crate::plan) fn convert(value: &Value, kind: &ParamKind) -> Option<Value> {
     let vector = |n: &[usize]| match value {
         Value::Vector(v) if n.contains(&v.len()) => {
-            v.iter().map(|x| x.as_f64().map(Value::Float)).collect::<Option<Vec<_>>>().map(Value::Vector)
+            (value.numbers().count() == v.len()).then(|| Value::vec(value.numbers()))
         }
         _ => None,
     };

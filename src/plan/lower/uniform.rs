@@ -362,7 +362,7 @@ fn known_fits(value: &Value, ty: &Type) -> bool {
         (Value::Vector(v), Type::Vector { components, scalar }) => {
             let length = v.len() as u32 == *components || (v.len() == 3 && *components == 4);
             let scalar = Type::Scalar(*scalar);
-            length && v.iter().all(|x| known_fits(x, &scalar))
+            length && v.iter().all(|x| known_fits(&x, &scalar))
         }
         _ => false,
     }

@@ -203,7 +203,7 @@ impl Lowering<'_> {
             let (value, depends) = self.known(s, expr)?;
             causes.add(&depends);
             for component in value.components() {
-                edges.push(self.edge(s, expr, &value, component)?);
+                edges.push(self.edge(s, expr, &value, &component)?);
             }
         }
         if edges.len() == 1 {

@@ -385,7 +385,7 @@ fn scalar(value: &Value) -> Json {
         Value::Float(x) => json!(x),
         Value::Bool(b) => json!(b),
         Value::Word(word) => json!(word),
-        Value::Vector(components) => components.iter().map(scalar).collect(),
+        Value::Vector(components) => components.iter().map(|component| scalar(&component)).collect(),
     }
 }
 

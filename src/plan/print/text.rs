@@ -363,10 +363,7 @@ fn params(plan: &Plan, out: &mut String) {
 /// `1` and `1.0` say the same of a Float.
 fn same(a: &Value, b: &Value) -> bool {
     a.components().len() == b.components().len()
-        && a.components()
-            .iter()
-            .zip(b.components())
-            .all(|(x, y)| x == y || (x.as_f64().is_some() && x.as_f64() == y.as_f64()))
+        && a.components().zip(b.components()).all(|(x, y)| x == y || (x.as_f64().is_some() && x.as_f64() == y.as_f64()))
 }
 
 fn files(plan: &Plan, out: &mut String) {

@@ -30,7 +30,7 @@ pub use model::{
     AlphaMode, Animation, Bounds, Channel, Filter, Interpolation, Keys, Lamp, LampKind, Lens, LensKind, Local,
     Material, Mesh, Model, Node, Primitive, Sampler, TextureUse, UvTransform, Wrap,
 };
-pub use pose::is_mirrored;
+pub use pose::{Pose, is_mirrored};
 use report::Report;
 
 type Gatherer = fn(&mut Bundle, &dyn Files);

@@ -4,20 +4,36 @@ use glam::{Mat4, Quat, Vec3};
 
 use super::model::{Animation, Bounds, Channel, Interpolation, Keys, Local, Model, Primitive};
 
+/// Where a model's nodes are, with what it takes to find out.
+#[derive(Clone, Debug, Default)]
+pub struct Pose {
+    locals: Vec<Local>,
+    /// World from node, for each node.
+    pub world: Vec<Mat4>,
+}
+
 impl Model {
     /// World from node, for each node, at a time of one of the animations. Before its first key
     /// and after its last a channel stands still; looping is the caller's choice.
     pub fn pose(&self, animation: Option<usize>, time_s: f64) -> Vec<Mat4> {
-        let mut locals: Vec<Local> = self.nodes.iter().map(|node| node.local).collect();
+        let mut pose = Pose::default();
+        self.pose_into(animation, time_s, &mut pose);
+        pose.world
+    }
+
+    /// The same into memory that is there, for those who ask in every frame.
+    pub fn pose_into(&self, animation: Option<usize>, time_s: f64, pose: &mut Pose) {
+        let Pose { locals, world } = pose;
+        locals.clear();
+        locals.extend(self.nodes.iter().map(|node| node.local));
         if let Some(animation) = animation.and_then(|index| self.animations.get(index)) {
-            animation.apply(time_s, &mut locals);
+            animation.apply(time_s, locals);
         }
-        let mut world: Vec<Mat4> = Vec::with_capacity(locals.len());
-        for (node, local) in self.nodes.iter().zip(locals) {
+        world.clear();
+        for (node, local) in self.nodes.iter().zip(&*locals) {
             let parent = node.parent.and_then(|parent| world.get(parent)).copied().unwrap_or(Mat4::IDENTITY);
             world.push(parent * local.matrix());
         }
-        world
     }
 
     /// The box around all triangles, with nodes where `world_from_node` says; none without any.

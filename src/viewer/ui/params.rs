@@ -169,7 +169,7 @@ fn float(ui: &mut Ui, param: &Param, value: &Value) -> Option<Value> {
 }
 
 fn vector(ui: &mut Ui, value: &Value) -> Option<Value> {
-    let mut numbers: Vec<f64> = value.components().iter().filter_map(Value::as_f64).collect();
+    let mut numbers: Vec<f64> = value.numbers().collect();
     let mut changed = false;
     // The row runs from the right.
     for number in numbers.iter_mut().rev() {
@@ -181,7 +181,7 @@ fn vector(ui: &mut Ui, value: &Value) -> Option<Value> {
 
 /// Linear and unbounded: numbers, and a swatch that picks a hue with the largest number kept.
 fn color(ui: &mut Ui, value: &Value) -> Option<Value> {
-    let numbers: Vec<f64> = value.components().iter().filter_map(Value::as_f64).collect();
+    let numbers: Vec<f64> = value.numbers().collect();
     let largest = numbers.iter().take(3).copied().fold(0.0, f64::max).max(1.0);
     let mut rgb: [f32; 3] = std::array::from_fn(|i| (numbers.get(i).copied().unwrap_or(0.0) / largest) as f32);
     let picked = ui.color_edit_button_rgb(&mut rgb).on_hover_text("linear colour").changed();

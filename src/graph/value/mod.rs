@@ -1,8 +1,12 @@
 //! Values of expressions and parameters.
 
+mod vector;
+
 use std::fmt;
 
-/// A value of the expression language. Vectors are homogeneous and have 2 to 4 components.
+pub use vector::Vector;
+
+/// A value of the expression language. Its vectors have 2 to 4 components; matrices and rows of tables have more.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Value {
     Int(i64),
@@ -10,7 +14,7 @@ pub enum Value {
     Bool(bool),
     /// A word of a `Choice`.
     Word(String),
-    Vector(Vec<Value>),
+    Vector(Vector),
 }
 
 impl Value {
@@ -21,7 +25,7 @@ impl Value {
             Value::Float(_) => "Float",
             Value::Bool(_) => "Bool",
             Value::Word(_) => "word",
-            Value::Vector(v) => match (v.first(), v.len()) {
+            Value::Vector(v) => match (v.get(0), v.len()) {
                 (Some(Value::Int(_)), 2) => "vector of 2 Int",
                 (Some(Value::Int(_)), 3) => "vector of 3 Int",
                 (Some(Value::Int(_)), _) => "vector of 4 Int",
@@ -58,15 +62,26 @@ impl Value {
     }
 
     /// Its components; a scalar is its own single component.
-    pub fn components(&self) -> &[Value] {
-        match self {
-            Value::Vector(v) => v,
-            scalar => std::slice::from_ref(scalar),
-        }
+    pub fn components(&self) -> impl ExactSizeIterator<Item = Value> + Clone + '_ {
+        let count = if let Value::Vector(v) = self { v.len() } else { 1 };
+        (0..count).map(move |index| match self {
+            Value::Vector(v) => v.get(index).unwrap_or(Value::Int(0)),
+            scalar => scalar.clone(),
+        })
+    }
+
+    /// Its numbers, of a vector those of its components. Words and truth values are none.
+    pub fn numbers(&self) -> impl Iterator<Item = f64> + Clone + '_ {
+        self.components().filter_map(|component| component.as_f64())
     }
 
     pub fn vec(components: impl IntoIterator<Item = f64>) -> Self {
-        Value::Vector(components.into_iter().map(Value::Float).collect())
+        Value::Vector(Vector::floats(components))
+    }
+
+    /// A vector of whole numbers.
+    pub fn ints(components: impl IntoIterator<Item = i64>) -> Self {
+        Value::Vector(Vector::ints(components))
     }
 }
 
