@@ -59,6 +59,20 @@ fn what_keeps_the_content_needs_the_earlier_writer() {
     assert_eq!(paths(&Test::of(AB, &passes, r#""a""#).plan()), ["early", "more"]);
 }
 
+/// As many threads as were counted write no whole buffer, and none if nothing was counted.
+#[test]
+fn what_a_count_drives_writes_nothing_whole() {
+    const LIST: &str = r#""a": Buffer(items: 100), "list": Counted(capacity: 10)"#;
+    let passes = [
+        fill("early", "a"),
+        r#"Clear(name: "empty", of: "list"), Compute(name: "append", shader: "append.wgsl", each: Threads(10)),"#
+            .into(),
+        r#"Compute(name: "late", shader: "consume.wgsl", each: Item("list"), bind: {"dst": "a"}),"#.into(),
+    ];
+    let plan = Test::of(LIST, &passes.concat(), r#""a""#).plan();
+    assert!(paths(&plan).contains(&"early") && culled(&plan).is_empty(), "{:?}", culled(&plan));
+}
+
 /// A draw that clears depth alone still sees the stencil that was there.
 #[test]
 fn clearing_one_aspect_keeps_the_other() {

@@ -139,6 +139,10 @@ impl Lowering<'_> {
             causes.add(outer);
         }
         let mut all = draft.accesses;
+        if !draft.counted.is_empty() || draft.arguments.is_some() {
+            // As many threads as were counted write as much: what was there before may show behind it.
+            all.iter_mut().filter(|(_, place)| place.shader.is_some()).for_each(|(access, _)| access.whole = false);
+        }
         // A count that decides how much runs is read, even if the shader does not see it.
         for (object, _) in &draft.counted {
             if !all.iter().any(|(access, _)| access.object == *object) {
