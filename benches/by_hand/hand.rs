@@ -46,7 +46,8 @@ struct Target {
 
 struct Drawing {
     label: String,
-    pipeline: wgpu::RenderPipeline,
+    /// Absent for meshes: the scene has none, and only their targets are cleared.
+    pipeline: Option<wgpu::RenderPipeline>,
     group: Option<wgpu::BindGroup>,
     colors: Vec<Target>,
     depth: Option<(wgpu::TextureView, Option<wgpu::Operations<f32>>)>,
@@ -177,7 +178,8 @@ impl Hand {
             depth_stencil_attachment: depth,
             ..wgpu::RenderPassDescriptor::default()
         });
-        pass.set_pipeline(&drawing.pipeline);
+        let Some(pipeline) = &drawing.pipeline else { return };
+        pass.set_pipeline(pipeline);
         if let Some(group) = &drawing.group {
             pass.set_bind_group(0, group, &[]);
         }
@@ -307,8 +309,8 @@ impl Hand {
     }
 
     fn drawing(&self, modules: &mut Modules<'_>, pass: &Pass, draw: &Draw) -> Drawing {
-        let pipeline = modules.draw(draw);
-        let bound = !draw.shader.bindings.is_empty();
+        let pipeline = (!matches!(draw.geometry, Geometry::Meshes(_))).then(|| modules.draw(draw));
+        let bound = pipeline.as_ref().filter(|_| !draw.shader.bindings.is_empty());
         let colors = draw.color.iter().map(|target| Target {
             view: self.target(&target.view),
             resolve: target.resolve.as_ref().map(|view| self.target(view)),
@@ -325,13 +327,14 @@ impl Hand {
         });
         Drawing {
             label: pass.path.clone(),
-            group: bound.then(|| self.group(modules, &pipeline.get_bind_group_layout(0), &draw.shader.bindings)),
+            group: bound.map(|bound| self.group(modules, &bound.get_bind_group_layout(0), &draw.shader.bindings)),
             colors: colors.collect(),
             depth,
             vertices: match draw.geometry {
                 Geometry::Fullscreen => Vertices::Direct(3, 1),
                 Geometry::Direct { vertices, instances } => Vertices::Direct(vertices, instances),
                 Geometry::Indirect { slot, indices: None } => Vertices::Indirect(u64::from(slot) * 32),
+                Geometry::Meshes(_) => Vertices::Direct(0, 0),
                 ref other => panic!("not written by hand: {other:?}"),
             },
             pipeline,
