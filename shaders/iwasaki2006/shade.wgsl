@@ -53,34 +53,11 @@ fn slice_hit(p: vec3f, direction: vec3f, reach: f32) -> vec4f {
     return vec4f(0.0);
 }
 
-/// What a ray from a point meets: pool, ground or sky. `footprint_m` is the width that a pixel has at the point.
-fn met(p: vec3f, direction: vec3f, hit: PoolHit, footprint_m: f32) -> vec3f {
-    let sky = textureSampleLevel(sky_cube, linear_clamp, direction, 0.0).rgb;
-    if hit.kind == NOTHING {
-        return sky;
-    }
-    let slant = max(abs(dot(hit.normal, direction)), 0.1);
-    let color = pool_color(p + hit.t * direction, hit.normal, hit.kind, footprint_m / slant);
-    return color.rgb + (1.0 - color.a) * sky;
-}
-
 /// Metres that a ray goes in the box where the water is.
 fn in_box_m(p: vec3f, direction: vec3f) -> f32 {
     let towards = select(box_of.low, box_of.high, direction > vec3f(0.0));
     let t = (towards - p) / select(direction, vec3f(1.0e-6), abs(direction) < vec3f(1.0e-6));
     return max(min(t.x, min(t.y, t.z)), 0.0);
-}
-
-/// The same under water: meshes too, and what the water takes on the way.
-fn met_in_water(p: vec3f, direction: vec3f, footprint_m: f32) -> vec3f {
-    let hit = pool_hit(p, direction);
-    let mesh = slice_hit(p, direction, hit.t);
-    if mesh.w > 0.0 {
-        return mesh.rgb * transmitted(plane_stack.absorption, mesh.w);
-    }
-    // What misses the pool has left the water somewhere.
-    let way = select(hit.t, min(hit.t, in_box_m(p, direction)), hit.kind == NOTHING || direction.y > 0.0);
-    return met(p, direction, hit, footprint_m) * transmitted(plane_stack.absorption, way);
 }
 
 /// Where a ray leaves again what it has entered: metres, and the outward normal; 0 where it does not.
@@ -106,49 +83,82 @@ fn exit(p: vec3f, direction: vec3f, pixel: vec2f) -> vec4f {
     return found;
 }
 
-/// Light that comes against a ray from where it left: of what is dry there, or of the pool's water after it went in again.
-fn met_outside(p: vec3f, direction: vec3f, footprint: f32) -> vec3f {
-    let hit = pool_hit(p, direction);
-    if hit.kind != NOTHING && direction.y < 0.0 && under_water_m(p + hit.t * direction) > 0.0 {
-        return met_in_water(p, bend_in(direction, vec3f(0.0, 1.0, 0.0), light_screen.ior).direction, footprint);
-    }
-    return met(p, direction, hit, footprint);
+/// Rays whose light is still to be looked up: gathered first and followed in one place, which keeps the shader short.
+struct Rays {
+    count: u32,
+    p: array<vec3f, 3>,
+    direction: array<vec3f, 3>,
+    share: array<vec3f, 3>,
+    is_wet: array<bool, 3>,
 }
 
-/// Light through a point of the surface, seen from outside; `footprint` is a pixel's width there.
-fn from_outside(p: vec3f, view: vec3f, facing: vec3f, footprint: f32, pixel: vec2f) -> vec3f {
+fn add_ray(rays: ptr<function, Rays>, p: vec3f, direction: vec3f, share: vec3f, is_wet: bool) {
+    let i = (*rays).count;
+    if any(share > vec3f(0.0)) && i < 3u {
+        (*rays).p[i] = p;
+        (*rays).direction[i] = direction;
+        (*rays).share[i] = share;
+        (*rays).is_wet[i] = is_wet;
+        (*rays).count = i + 1u;
+    }
+}
+
+/// Light that comes against a ray: of pool, ground or sky, and under water of meshes too, without what the water takes on
+/// the way. `footprint` is the width that a pixel has where the ray starts.
+fn met(p: vec3f, towards: vec3f, starts_wet: bool, footprint: f32) -> vec3f {
+    var direction = towards;
+    var is_wet = starts_wet;
+    var hit = pool_hit(p, direction);
+    if !is_wet && hit.kind != NOTHING && direction.y < 0.0 && under_water_m(p + hit.t * direction) > 0.0 {
+        // Into the pool's water, as if that were level and began here.
+        is_wet = true;
+        direction = bend_in(direction, vec3f(0.0, 1.0, 0.0), light_screen.ior).direction;
+        hit = pool_hit(p, direction);
+    }
+    var light = textureSampleLevel(sky_cube, linear_clamp, direction, 0.0).rgb;
+    var way = select(0.0, min(hit.t, in_box_m(p, direction)), is_wet);
+    var mesh = vec4f(0.0);
+    if is_wet {
+        mesh = slice_hit(p, direction, hit.t);
+    }
+    if mesh.w > 0.0 {
+        light = mesh.rgb;
+        way = mesh.w;
+    } else if hit.kind != NOTHING {
+        let slant = max(abs(dot(hit.normal, direction)), 0.1);
+        let color = pool_color(p + hit.t * direction, hit.normal, hit.kind, footprint / slant);
+        light = color.rgb + (1.0 - color.a) * light;
+        // What goes up has left the water somewhere.
+        way = select(way, hit.t, is_wet && direction.y <= 0.0);
+    }
+    return light * transmitted(plane_stack.absorption, way);
+}
+
+/// What a surface seen from outside sends: what it mirrors, and what comes through the water and out of it again.
+fn from_outside(rays: ptr<function, Rays>, p: vec3f, view: vec3f, facing: vec3f, pixel: vec2f) {
     let reflectance = fresnel(clamp(-dot(view, facing), 0.0, 1.0), light_screen.ior);
-    let mirrored = reflect(view, facing);
-    let reflected = met(p, mirrored, pool_hit(p, mirrored), footprint);
+    add_ray(rays, p, reflect(view, facing), vec3f(reflectance), false);
     var inner = bend_in(view, facing, light_screen.ior).direction;
     var start = p;
-    var share = vec3f(1.0);
-    var light = reflectance * reflected;
+    var share = vec3f(1.0 - reflectance);
     let leaves = exit(p, inner, pixel);
     if leaves.w > 0.0 {
         start += leaves.w * inner;
-        share = transmitted(plane_stack.absorption, leaves.w);
-        let back = -leaves.xyz;
-        let out = bend_out(inner, back, light_screen.ior);
-        if out.reflectance < 1.0 {
-            light += (1.0 - reflectance) * (1.0 - out.reflectance) * share * met_outside(start, out.direction, footprint);
-        }
+        share *= transmitted(plane_stack.absorption, leaves.w);
+        let out = bend_out(inner, -leaves.xyz, light_screen.ior);
+        add_ray(rays, start, out.direction, (1.0 - out.reflectance) * share, false);
         share *= out.reflectance;
-        inner = reflect(inner, back);
+        inner = reflect(inner, -leaves.xyz);
     }
-    return light + (1.0 - reflectance) * share * met_in_water(start, inner, footprint);
+    add_ray(rays, start, inner, share, true);
 }
 
 /// The same from inside, where the surface may reflect everything; the way from the eye to it absorbs too.
-fn from_inside(p: vec3f, view: vec3f, facing: vec3f, footprint: f32, way_m: f32) -> vec3f {
+fn from_inside(rays: ptr<function, Rays>, p: vec3f, view: vec3f, facing: vec3f, way_m: f32) {
     let out = bend_out(view, facing, light_screen.ior);
-    let mirrored = reflect(view, facing);
-    let reflected = met_in_water(p, mirrored, footprint);
-    var light = reflected;
-    if out.reflectance < 1.0 {
-        light = mix(met(p, out.direction, pool_hit(p, out.direction), footprint), reflected, out.reflectance);
-    }
-    return light * transmitted(plane_stack.absorption, way_m);
+    let left = transmitted(plane_stack.absorption, way_m);
+    add_ray(rays, p, reflect(view, facing), out.reflectance * left, true);
+    add_ray(rays, p, out.direction, (1.0 - out.reflectance) * left, false);
 }
 
 @fragment
@@ -169,8 +179,15 @@ fn seen(@builtin(position) position: vec4f) -> @location(0) vec4f {
     // A blended normal may face away at the rim.
     let facing = normalize(normal - max(dot(normal, view) + 0.02, 0.0) * view);
     let footprint = length(p_in_view) * 2.0 / (camera.viewport.y * abs(camera.clip_from_view[1][1]));
+    var rays: Rays;
     if inside {
-        return vec4f(from_inside(p, view, facing, footprint, length(p_in_view)), 1.0);
+        from_inside(&rays, p, view, facing, length(p_in_view));
+    } else {
+        from_outside(&rays, p, view, facing, position.xy);
     }
-    return vec4f(from_outside(p, view, facing, footprint, position.xy), 1.0);
+    var light = vec3f(0.0);
+    for (var i = 0u; i < rays.count; i++) {
+        light += rays.share[i] * met(rays.p[i], rays.direction[i], rays.is_wet[i], footprint);
+    }
+    return vec4f(light, 1.0);
 }
