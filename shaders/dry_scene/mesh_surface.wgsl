@@ -3,6 +3,7 @@
 #import "dry_scene/skylight.wgsl"
 #import "dry_scene/sunlight.wgsl"
 #import "lib/camera.wgsl"
+#import "lib/linear_clamp.wgsl"
 #import "lib/mesh_place.wgsl"
 
 struct Params {
@@ -122,7 +123,7 @@ fn sky_mirrored(f0: vec3f, roughness: f32, nv: f32) -> vec3f {
     return clamp((f0 * scale + bias) * (1.0 + f0 * (1.0 / max(scale + bias, 0.05) - 1.0)), vec3f(0.0), vec3f(1.0));
 }
 
-fn mesh_color(in: Vertex, is_front: bool) -> vec4f {
+fn mesh_color(in: Vertex, is_front: bool, through: vec3f) -> vec4f {
     let base = material.base_color_factor * in.color
         * textureSample(base_color_texture, base_color_sampler, uv(in, material.base_color_texcoord, material.base_color_transform));
     let rough_metal = textureSample(metallic_roughness_texture, metallic_roughness_sampler,
@@ -158,7 +159,7 @@ fn mesh_color(in: Vertex, is_front: bool) -> vec4f {
     let share = sky_mirrored(f0, roughness, nv);
     let from_sky = (1.0 - share) * albedo / PI * sky_irradiance(normal) + share * mirrored;
     let geometric = normalize(in.normal) * select(-1.0, 1.0, is_front);
-    let sun_here = from_sun(in.world, normal) * select(0.0, 1.0, dot(geometric, -sun.direction) > 0.0);
+    let sun_here = from_sun(in.world, normal, through) * select(0.0, 1.0, dot(geometric, -sun.direction) > 0.0);
     let direct = ((1.0 - share) * albedo / PI + ggx(normal, to_eye, -sun.direction, roughness * roughness, f0)) * sun_here;
     let color = from_sky * occlusion + direct + emitted;
     return vec4f(min(color, vec3f(60000.0)) * alpha, alpha);

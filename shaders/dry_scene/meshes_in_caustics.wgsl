@@ -17,5 +17,5 @@ fn place(
 
 @fragment
 fn shade(in: Vertex, @builtin(front_facing) is_front: bool) -> @location(0) vec4f {
-    return mesh_color(in, is_front);
+    return mesh_color(in, is_front, through_water(in.world));
 }

@@ -9,5 +9,5 @@ fn geometry(@builtin(vertex_index) index: u32) -> Vertex {
 
 @fragment
 fn shade(in: Vertex) -> @location(0) vec4f {
-    return dry_color(in);
+    return dry_color(in, through_water(in.world));
 }

@@ -71,7 +71,7 @@ fn checker(at: vec2f) -> f32 {
     return 0.5 + 0.5 * wave.x * wave.y;
 }
 
-fn dry_color(in: Vertex) -> vec4f {
+fn dry_color(in: Vertex, through: vec3f) -> vec4f {
     let square = checker(in.world.xz / params.tile_m);
     var albedo = params.box_color;
     var alpha = 1.0;
@@ -80,6 +80,6 @@ fn dry_color(in: Vertex) -> vec4f {
         let away = length(in.world.xz - params.middle) / params.floor_radius_m;
         alpha = 1.0 - smoothstep(0.35, 1.0, away);
     }
-    let light = sky_irradiance(in.normal) + from_sun(in.world, in.normal);
+    let light = sky_irradiance(in.normal) + from_sun(in.world, in.normal, through);
     return vec4f(albedo * light / 3.14159265 * alpha, alpha);
 }

@@ -1,6 +1,6 @@
-// How much of the sun's light reaches a point: past the meshes, and as `through_water` says, which whoever imports this
-// has from `through_thickness.wgsl` or `through_caustics.wgsl`.
-#import "lib/light.wgsl"
+// How much of the sun's light reaches a point past the meshes. What the water leaves of it is said by who asks, from
+// `through_thickness.wgsl` or `through_caustics.wgsl`.
+#import "lib/sun.wgsl"
 #import "lib/sun_view.wgsl"
 
 struct Sunlight {
@@ -12,7 +12,6 @@ struct Sunlight {
 override casts: bool = false;
 
 var<uniform> sunlight: Sunlight;
-var<uniform> sun: Light;
 var sun_depth: texture_depth_2d;
 var depth_compare: sampler_comparison;
 
@@ -38,11 +37,11 @@ fn past_meshes(p: vec3f, normal: vec3f) -> f32 {
     return lit / 9.0;
 }
 
-/// The sun's irradiance on a surface at a point.
-fn from_sun(p: vec3f, normal: vec3f) -> vec3f {
+/// The sun's irradiance on a surface at a point, of which the water lets the share `through` pass.
+fn from_sun(p: vec3f, normal: vec3f, through: vec3f) -> vec3f {
     let facing = dot(normal, -sun.direction);
     if facing <= 0.0 {
         return vec3f(0.0);
     }
-    return irradiance(sun) * facing * through_water(p) * past_meshes(p, normal);
+    return irradiance(sun) * facing * through * past_meshes(p, normal);
 }

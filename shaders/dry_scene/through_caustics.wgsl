@@ -1,5 +1,6 @@
 // How much of the sun's light comes through the water, which bends it: caustics.
 #import "lib/sample_planes.wgsl"
+#import "lib/sun.wgsl"
 
 /// The light of the sample planes as a share of what would come without water.
 fn through_water(p: vec3f) -> vec3f {

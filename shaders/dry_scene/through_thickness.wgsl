@@ -1,4 +1,6 @@
 // How much of the sun's light comes through the water, which fades it.
+#import "lib/linear_clamp.wgsl"
+#import "lib/sun.wgsl"
 
 struct Shade {
     middle: vec2f,
@@ -12,7 +14,6 @@ struct Shade {
 var<uniform> shade_of: Shade;
 // Metres of liquid along each ray of the sun, and that times their height and their height squared.
 var thickness: texture_2d<f32>;
-var linear_clamp: sampler;
 
 /// Share of the sun's light that comes through the water above a point.
 fn through_water(p: vec3f) -> vec3f {

@@ -1,9 +1,9 @@
 // Light between the sample planes of `parts/caustics.ron`, for whatever lies there.
+#import "lib/linear_clamp.wgsl"
 #import "lib/planes_place.wgsl"
 
 var<uniform> stack: PlanesPlace;
 var caustics: texture_2d_array<f32>;
-var linear_clamp: sampler;
 
 /// Light through a level square metre at a point; w is 0 outside the planes.
 fn between_planes(p: vec3f) -> vec4f {
