@@ -69,8 +69,8 @@ enum Owner {
 fn owner(call: &str, files: &[String]) -> Option<Owner> {
     let (_, call) = call.split_once(": ")?;
     let (name, place) = call.rsplit_once(" (")?;
-    // Made by the attribute on the allocator.
-    if name.starts_with("__rustc::") {
+    // Made by the attribute on the allocator: `__rustc::__rust_alloc`, without its crate where it was inlined.
+    if name.starts_with("__rust") {
         return None;
     }
     let file = place.split(':').next()?;

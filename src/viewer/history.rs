@@ -41,6 +41,7 @@ impl Series {
 #[derive(Clone, Debug, Default)]
 pub struct Times {
     passes: BTreeMap<String, Series>,
+    recording: BTreeMap<String, Series>,
     pub gpu: Series,
     pub encode: Series,
     /// The newest report.
@@ -52,6 +53,9 @@ impl Times {
         for pass in &report.passes {
             if let Some(ms) = pass.gpu_ms {
                 self.passes.entry(pass.path.clone()).or_default().push(ms);
+            }
+            if let Some(ms) = pass.record_ms {
+                self.recording.entry(pass.path.clone()).or_default().push(ms);
             }
         }
         if let Some(ms) = report.gpu_ms() {
@@ -65,9 +69,15 @@ impl Times {
         self.passes.get(path)
     }
 
+    /// CPU time of recording a pass.
+    pub fn recording(&self, path: &str) -> Option<&Series> {
+        self.recording.get(path)
+    }
+
     /// Forgets passes that are not there any more.
     pub fn keep(&mut self, is_there: impl Fn(&str) -> bool) {
         self.passes.retain(|path, _| is_there(path));
+        self.recording.retain(|path, _| is_there(path));
     }
 }
 

