@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 
 use wgpu_types::{Features, Limits, TextureUsages};
 
+use super::content::{COLOR, Content};
 use super::inputs::Input;
-use super::load::{COLOR, Content};
 use super::meshes::{Meshes, Standing};
 use super::sequence::Track;
 use super::state::Held;

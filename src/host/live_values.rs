@@ -3,8 +3,8 @@
 
 use std::collections::BTreeMap;
 
+use super::content::Content;
 use super::inputs::Input;
-use super::load::Content;
 use crate::engine::StepInfo;
 use crate::graph::value::Value;
 use crate::scene::{Camera, PointerPath};

@@ -1,26 +1,25 @@
 //! From files to everything that a picture needs, without a device.
 
+mod gather;
+
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use glam::DVec3;
-use wgpu_types::{Features, Limits};
 
-use super::assets::{AssetKind, Cache, Pending};
-use super::frames::{self, Located};
-use super::inputs::{self, Frames, ImageFiles, Input, Offer, ParticleFile};
-use super::models::{MeshFiles, Reading};
+use super::assets::Cache;
+use super::content::Content;
+use super::inputs::{self, Input, Offer};
 use super::params::{self, Given, Raw};
 use super::sequence::{Track, When};
 use super::source;
-use crate::diagnostic::{Code, Diagnostic, Diagnostics, Sources, Span};
+use crate::diagnostic::{Code, Diagnostic, Diagnostics, Sources};
 use crate::files::{self, Files, Kind};
 use crate::graph::value::Value;
-use crate::plan::model::{InputInfo, MemoryRequest, Policy, Request, Texture};
+use crate::plan::model::{MemoryRequest, Policy};
 use crate::program::{self, Program, missing_file};
-use crate::scene::sequence::Sequence;
-use crate::scene::{self, Camera, Item, MeshEntry, PointerPath, Scene, framing};
+use crate::scene::{Camera, Item, MeshEntry, PointerPath, Scene, framing};
 use crate::syntax::{Sp, first_word};
 
 /// The graph that turns light into a picture.
@@ -70,28 +69,6 @@ pub struct Job {
     pub memory_budget: Option<u64>,
     /// One picture after another is made, so that sequences move from each to the next.
     pub plays: bool,
-}
-
-/// Everything that a picture is made of.
-#[derive(Clone, Debug)]
-pub struct Content {
-    pub program: Program,
-    pub present: Program,
-    pub inputs: BTreeMap<String, Input>,
-    /// What feeds the presenting graph, besides the picture.
-    pub present_inputs: BTreeMap<String, Input>,
-    pub camera: Camera,
-    /// Pixels.
-    pub viewport: [u32; 2],
-    pub params: BTreeMap<String, Value>,
-    pub present_params: BTreeMap<String, Value>,
-    pub roots: Vec<String>,
-    /// Numbered files that inputs are frames of, in the order of the scene.
-    pub tracks: Vec<Track>,
-    /// What is asked of memory.
-    pub memory: MemoryRequest,
-    /// Whether statistics are wanted: passes that only they need run then.
-    pub stats: bool,
 }
 
 /// What loading gave.
@@ -238,142 +215,6 @@ impl Loader<'_> {
         loaded.program
     }
 
-    /// The scene's particle files, with those that the command line puts in their place.
-    fn particles(&mut self, scene: &Scene, given: bool) -> Vec<ParticleFile> {
-        let (replaced, file) = match self.job.particles.as_deref().map(|text| (text, text.split_once('='))) {
-            Some((_, Some((name, file)))) => (Some(name.to_owned()), Some(file.to_owned())),
-            Some((file, None)) => (None, Some(file.to_owned())),
-            None => (None, None),
-        };
-        let mut list = Vec::new();
-        for item in &scene.particles {
-            // The one file on the command line takes the place of the scene's one.
-            let same = replaced.as_deref().is_none_or(|name| name == item.name.value);
-            let is_replaced = file.is_some() && same && (replaced.is_some() || scene.particles.len() == 1);
-            if is_replaced {
-                continue;
-            }
-            let name = &item.value.file;
-            let (path, bytes, sequence) = match &item.value.sequence {
-                None => {
-                    let (path, bytes) = self.asset(&name.value, &scene.path, name.span);
-                    (path, bytes, None)
-                }
-                Some(sequence) => self.frame(&name.value, sequence, Some(&scene.path), Some(name.span)),
-            };
-            let said = self.job.radius_m.or(item.value.radius_m.as_ref().map(|r| r.value));
-            let file = self.particle_file(Some(item.name.value.clone()), path, bytes, said, Some(name.span));
-            list.push(ParticleFile { bounds: item.value.bounds, sequence, ..file });
-        }
-        let source = given.then(|| (None, self.job.source.clone()));
-        for (name, path) in source.into_iter().chain(file.map(|file| (replaced, PathBuf::from(file)))) {
-            let (path, bytes, sequence) = match source::sequence(self.files, &path) {
-                Some(pattern) => self.frame(&pattern, &Sequence::default(), None, None),
-                None => {
-                    self.read.push(path.clone());
-                    let bytes = source::named(self.files, &path).map_err(|error| self.diagnostics.push(error)).ok();
-                    (path, bytes, None)
-                }
-            };
-            let file = self.particle_file(name, path, bytes, self.job.radius_m, None);
-            list.push(ParticleFile { sequence, ..file });
-        }
-        list
-    }
-
-    /// The file of a sequence that shows at the moment asked for.
-    fn frame(
-        &mut self,
-        name: &str,
-        sequence: &Sequence,
-        beside: Option<&Path>,
-        at: Option<Span>,
-    ) -> (PathBuf, Option<Arc<[u8]>>, Option<Frames>) {
-        let label = |found: Diagnostic| match at {
-            Some(span) => found.at(span, "named here"),
-            None => found,
-        };
-        match frames::locate(self.files, name, sequence, beside, self.job.when) {
-            Ok(Located { path, frames, held }) => {
-                held.into_iter().for_each(|held| self.diagnostics.push(label(held)));
-                self.read.push(path.clone());
-                let bytes = source::named(self.files, &path).map_err(|error| self.diagnostics.push(label(error))).ok();
-                (path, bytes, Some(frames))
-            }
-            Err(error) => {
-                self.diagnostics.push(label(error));
-                (PathBuf::from(name), None, None)
-            }
-        }
-    }
-
-    fn particle_file(
-        &self,
-        name: Option<String>,
-        path: PathBuf,
-        bytes: Option<Arc<[u8]>>,
-        radius_m: Option<f64>,
-        at: Option<Span>,
-    ) -> ParticleFile {
-        let kind = AssetKind::Particles { estimate: radius_m.is_none() };
-        let pending = bytes.map(|bytes| self.cache.begin(&path, bytes, kind, at));
-        ParticleFile { name, path, pending, radius_m, bounds: None, sequence: None }
-    }
-
-    /// The pictures of each name: one, or the six faces of a cube.
-    fn images(&mut self, scene: &Scene) -> Vec<ImageFiles> {
-        let mut list = Vec::new();
-        for Item { name, value: file, .. } in &scene.textures {
-            let pending = vec![self.image(file, &scene.path)];
-            list.push(ImageFiles { name: name.value.clone(), pending, cube_at: None });
-        }
-        if let Some(Item { name, value, span }) = &scene.cube {
-            let pending = value.files().iter().map(|file| self.image(file, &scene.path)).collect();
-            list.push(ImageFiles { name: name.value.clone(), pending, cube_at: Some(*span) });
-        }
-        list
-    }
-
-    /// The scene's bodies, with their files being read.
-    fn meshes(&mut self, scene: &Scene) -> (Vec<MeshFiles>, Reading) {
-        let (mut all, mut reading) = (Vec::new(), Reading::default());
-        for item in &scene.meshes {
-            let mut paths = Vec::with_capacity(item.value.len());
-            for entry in &item.value {
-                let (path, bytes) = self.asset(&entry.file.value, &scene.path, entry.file.span);
-                let is_there = bytes.is_some();
-                if let Some(bytes) = bytes.filter(|_| !reading.has(&path)) {
-                    let bundle = scene::meshes::gather(self.files, &path, bytes);
-                    self.read.extend(bundle.looked_at.iter().cloned());
-                    reading.begin(&self.cache.models, bundle, entry.file.span);
-                }
-                paths.push(is_there.then_some(path));
-            }
-            all.push(MeshFiles { name: item.name.value.clone(), entries: item.value.clone(), paths });
-        }
-        (all, reading)
-    }
-
-    fn image(&mut self, file: &Sp<String>, scene: &Path) -> Option<Pending> {
-        let (path, bytes) = self.asset(&file.value, scene, file.span);
-        Some(self.cache.begin(&path, bytes?, AssetKind::Image, Some(file.span)))
-    }
-
-    /// A file that a scene names: its path, and its bytes if it is there.
-    fn asset(&mut self, name: &str, scene: &Path, at: Span) -> (PathBuf, Option<Arc<[u8]>>) {
-        match files::find(self.files, Kind::Asset, name, Some(scene)) {
-            Ok(found) => {
-                self.read.push(found.path.clone());
-                (found.path, Some(found.bytes))
-            }
-            Err(missing) => {
-                self.read.extend(missing.tried.iter().cloned());
-                self.diagnostics.push(missing_file(name, Kind::Asset, &missing, Some(at)));
-                (PathBuf::from(name), None)
-            }
-        }
-    }
-
     /// Values of the graph's parameters, and of the presenting graph's.
     fn params(
         &mut self,
@@ -455,52 +296,3 @@ fn corners(inputs: &BTreeMap<String, Input>) -> Vec<[f32; 3]> {
         .flat_map(|ends| (0..8).map(move |corner| [0, 1, 2].map(|axis| ends[corner >> axis & 1][axis] as f32)))
         .collect()
 }
-
-impl Content {
-    /// Puts other inputs in the place of those of the same names.
-    pub fn feed(&mut self, inputs: BTreeMap<String, Input>) {
-        for (name, input) in inputs {
-            let takers = [&mut self.inputs, &mut self.present_inputs];
-            for taken in takers.into_iter().filter_map(|taker| taker.get_mut(&name)) {
-                *taken = input.clone();
-            }
-        }
-    }
-
-    /// What planning the graph needs to know.
-    pub fn request(&self, features: Features, limits: Limits, capacities: &BTreeMap<String, u64>) -> Request {
-        Request {
-            viewport: self.viewport,
-            params: self.params.clone(),
-            inputs: self.inputs.iter().map(|(name, input)| (name.clone(), input.info())).collect(),
-            capacities: capacities.clone(),
-            roots: self.roots.clone(),
-            stats: self.stats,
-            // The budget is looked at once it is known what the rest takes.
-            memory: MemoryRequest { budget: None, ..self.memory.clone() },
-            features,
-            limits,
-        }
-    }
-
-    /// The same for the presenting graph, which takes the picture as its input `color`.
-    pub fn present_request(&self, color: Texture, features: Features, limits: Limits) -> Request {
-        let mut inputs: BTreeMap<String, InputInfo> =
-            self.present_inputs.iter().map(|(name, input)| (name.clone(), input.info())).collect();
-        inputs.insert(COLOR.into(), InputInfo::Texture(color));
-        Request {
-            viewport: self.viewport,
-            params: self.present_params.clone(),
-            inputs,
-            capacities: BTreeMap::new(),
-            roots: Vec::new(),
-            stats: false,
-            memory: MemoryRequest::default(),
-            features,
-            limits,
-        }
-    }
-}
-
-/// The presenting graph's input for the picture.
-pub(super) const COLOR: &str = "color";

@@ -1,6 +1,9 @@
 //! Bodies of a scene as one input of a graph: all their vertices one after the other, a list of
 //! calls that draw them, and where they are at a time.
 
+mod materials;
+mod poses;
+
 use std::collections::BTreeMap;
 use std::ops::Range;
 use std::sync::Arc;
@@ -9,13 +12,15 @@ use glam::{DMat4, Mat4, Vec3};
 
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::graph::value::Value;
-use crate::plan::meshes::{Faces, INSTANCE_BYTES, MaterialTexture, MeshDraw, MeshesInfo, VertexAttribute};
+use crate::plan::meshes::{Faces, MaterialTexture, MeshDraw, MeshesInfo, VertexAttribute};
 use crate::plan::packing;
 use crate::scene::MeshEntry;
-use crate::scene::Playing;
 use crate::scene::image::Stored;
-use crate::scene::meshes::{AlphaMode, Material, Model, Pose, Primitive, TextureUse, UvTransform, is_mirrored};
+use crate::scene::meshes::{AlphaMode, Material, Model, Primitive, is_mirrored};
 use crate::shader::reflect::Type;
+use materials::slots;
+pub(super) use poses::Standing;
+use poses::{Entry, animation};
 
 /// Bodies ready to be handed to a device.
 #[derive(Debug, Default)]
@@ -34,19 +39,6 @@ pub struct Meshes {
     blended: Vec<(u32, Vec3)>,
 }
 
-/// At how many times of its animation a body is looked at for its bounds.
-const POSES: u32 = 64;
-
-/// Where bodies that move stand, with the memory that it takes to tell.
-#[derive(Debug, Default)]
-pub(super) struct Standing {
-    /// The time in seconds at which they stand on the device.
-    pub at_s: Option<f64>,
-    poses: Vec<Pose>,
-    /// Items of `x.instances`.
-    pub bytes: Vec<u8>,
-}
-
 #[derive(Debug, Default)]
 struct Vertices {
     positions: Vec<[f32; 3]>,
@@ -56,15 +48,6 @@ struct Vertices {
     uv1: Vec<[f32; 2]>,
     color0: Vec<[f32; 4]>,
     indices: Vec<u32>,
-}
-
-/// A mesh file of the scene, and what moves its nodes.
-#[derive(Debug)]
-struct Entry {
-    model: Arc<Model>,
-    animation: Option<usize>,
-    loops: bool,
-    start_s: f64,
 }
 
 /// A primitive placed in a body.
@@ -283,32 +266,6 @@ impl Meshes {
         self.bodies.iter().flat_map(|m| bytemuck::bytes_of(&m.to_cols_array()).to_vec()).collect()
     }
 
-    /// Items of `x.instances` at a time in seconds.
-    pub(super) fn instances(&self, time_s: f64) -> Vec<u8> {
-        let mut standing = Standing::default();
-        self.instances_into(time_s, &mut standing);
-        standing.bytes
-    }
-
-    /// The same into memory that is there.
-    pub(super) fn instances_into(&self, time_s: f64, standing: &mut Standing) {
-        let Standing { poses, bytes, .. } = standing;
-        if poses.len() < self.entries.len() {
-            poses.resize_with(self.entries.len(), Pose::default);
-        }
-        for (entry, pose) in self.entries.iter().zip(&mut *poses) {
-            entry.pose_into(time_s, pose);
-        }
-        bytes.clear();
-        bytes.reserve(self.instances.len() * INSTANCE_BYTES as usize);
-        for instance in &self.instances {
-            let matrix = poses[instance.entry].world[instance.node].to_cols_array();
-            bytes.extend_from_slice(bytemuck::bytes_of(&matrix));
-            let words = [instance.body, instance.first_triangle, instance.triangles, instance.material];
-            bytes.extend_from_slice(bytemuck::bytes_of(&words));
-        }
-    }
-
     /// A value of each body, as a shader's type wants it.
     pub(super) fn value(
         &self,
@@ -326,25 +283,6 @@ impl Meshes {
             packing::encode(value, ty, out).map_err(|why| format!("`{name}` of body {body}: {why}"))?;
         }
         Ok(bytes)
-    }
-
-    /// The factors of all materials, as a shader's struct wants them.
-    pub(super) fn materials(&self, item: Option<&Type>, stride: u32) -> Result<Vec<u8>, String> {
-        let Some(Type::Struct { members, .. }) = item else { return Err("a material is a struct".into()) };
-        let mut bytes = vec![0; self.materials.len() * stride as usize];
-        for (material, out) in self.materials.iter().zip(bytes.chunks_exact_mut(stride.max(1) as usize)) {
-            for member in members {
-                let value = factor(material, &member.name).ok_or_else(|| format!("there is no `{}`", member.name))?;
-                let place = out.get_mut(member.offset as usize..).unwrap_or_default();
-                packing::encode(&value, &member.ty, place).map_err(|why| format!("`{}`: {why}", member.name))?;
-            }
-        }
-        Ok(bytes)
-    }
-
-    /// How each texture of each material is looked up.
-    pub(super) fn uses(&self) -> impl Iterator<Item = [Option<TextureUse>; 5]> {
-        self.materials.iter().map(|material| slots(material).map(|(_, used)| used))
     }
 }
 
@@ -372,49 +310,6 @@ impl Vertices {
     }
 }
 
-impl Entry {
-    /// The poses that its animation goes through, at even times.
-    fn poses(&self) -> Vec<Vec<Mat4>> {
-        let animation = self.animation.and_then(|a| self.model.animations.get(a));
-        let Some(duration_s) = animation.map(|a| f64::from(a.duration_s)) else { return vec![self.pose(0.0)] };
-        (0..=POSES).map(|i| self.model.pose(self.animation, duration_s * f64::from(i) / f64::from(POSES))).collect()
-    }
-
-    /// Body from node, for each node, at a time of the scene.
-    fn pose(&self, time_s: f64) -> Vec<Mat4> {
-        let mut pose = Pose::default();
-        self.pose_into(time_s, &mut pose);
-        pose.world
-    }
-
-    fn pose_into(&self, time_s: f64, pose: &mut Pose) {
-        let duration_s = self.animation.and_then(|a| self.model.animations.get(a)).map_or(0.0, |a| a.duration_s);
-        let mut at_s = time_s + self.start_s;
-        if self.loops && duration_s > 0.0 {
-            at_s = at_s.rem_euclid(f64::from(duration_s));
-        }
-        self.model.pose_into(self.animation, at_s, pose);
-    }
-}
-
-/// Which animation an entry plays, whether over and over, and from where.
-fn animation(entry: &MeshEntry, model: &Model) -> Result<(Option<usize>, bool, f64), Diagnostic> {
-    let Playing::Plays { animation, loops, start_s } = &entry.playing else { return Ok((None, false, 0.0)) };
-    let Some(name) = animation else {
-        return Ok(((!model.animations.is_empty()).then_some(0), *loops, *start_s));
-    };
-    if let Some(found) = model.animation(&name.value) {
-        return Ok((Some(found), *loops, *start_s));
-    }
-    let names: Vec<&str> = model.animations.iter().map(|a| a.name.as_str()).collect();
-    let message = format!("`{}` has no animation `{}`", entry.file.value, name.value);
-    let error = Diagnostic::error(Code::UNKNOWN_NAME, message).at(name.span, "asked for here");
-    Err(match names.as_slice() {
-        [] => error.hint("the file has no animations"),
-        names => error.nearest(&name.value, names.iter().copied()).hint(format!("it has {}", names.join(", "))),
-    })
-}
-
 /// Values by name: for each body what the scene gives.
 fn values(parts: &[(&MeshEntry, Arc<Model>)]) -> BTreeMap<String, Vec<Option<Value>>> {
     let names = parts.iter().flat_map(|(entry, _)| &entry.values).map(|item| item.name.value.clone());
@@ -426,86 +321,4 @@ fn values(parts: &[(&MeshEntry, Arc<Model>)]) -> BTreeMap<String, Vec<Option<Val
         }
     }
     all
-}
-
-fn slots(material: &Material) -> [(MaterialTexture, Option<TextureUse>); 5] {
-    MaterialTexture::ALL.map(|slot| {
-        let used = match slot {
-            MaterialTexture::BaseColor => material.base_color_texture,
-            MaterialTexture::MetallicRoughness => material.metallic_roughness_texture,
-            MaterialTexture::Normal => material.normal_texture,
-            MaterialTexture::Occlusion => material.occlusion_texture,
-            MaterialTexture::Emissive => material.emissive_texture,
-        };
-        (slot, used)
-    })
-}
-
-/// A factor of a material by the name that shaders know it by.
-fn factor(material: &Material, name: &str) -> Option<Value> {
-    let vector = |v: &[f32]| Value::vec(v.iter().map(|x| f64::from(*x)));
-    let float = |x: f32| Value::Float(f64::from(x));
-    let whole = |n: u32| Value::Int(i64::from(n));
-    let slot = |ending: &str| {
-        let texture = MaterialTexture::named(name, ending)?;
-        Some(slots(material)[texture as usize].1)
-    };
-    if let Some(used) = slot("_texcoord") {
-        return Some(whole(used.map_or(0, |used| used.uv_set)));
-    }
-    if let Some(used) = slot("_transform") {
-        return Some(transform(&used.map(|used| used.transform).unwrap_or_default()));
-    }
-    Some(match name {
-        "base_color_factor" => vector(&material.base_color_factor),
-        "metallic_factor" => float(material.metallic_factor),
-        "roughness_factor" => float(material.roughness_factor),
-        "emissive_factor" => vector(&material.emissive_factor),
-        "emissive_strength" => float(material.emissive_strength),
-        "normal_scale" => float(material.normal_scale),
-        "occlusion_strength" => float(material.occlusion_strength),
-        "alpha_mode" => whole(match material.alpha_mode {
-            AlphaMode::Opaque => 0,
-            AlphaMode::Mask => 1,
-            AlphaMode::Blend => 2,
-        }),
-        "alpha_cutoff" => float(material.alpha_cutoff),
-        "double_sided" => whole(u32::from(material.double_sided)),
-        "unlit" => whole(u32::from(material.unlit)),
-        "ior" => float(material.ior),
-        "transmission_factor" => float(material.transmission_factor),
-        _ => return None,
-    })
-}
-
-/// Columns of the matrix that takes (u, v, 1) to where a texture is looked up.
-fn transform(about: &UvTransform) -> Value {
-    let (sin, cos) = about.rotation.sin_cos();
-    let [x, y] = about.scale;
-    let [u, v] = about.offset;
-    Value::vec([cos * x, -sin * x, 0.0, sin * y, cos * y, 0.0, u, v, 1.0].map(f64::from))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::plan::meshes::MATERIAL;
-
-    #[test]
-    fn every_factor_that_planning_knows_has_a_value_that_fits() {
-        for (name, ty) in MATERIAL {
-            let value = factor(&Material::default(), name).unwrap_or_else(|| panic!("no `{name}`"));
-            let mut out = vec![0; ty.size() as usize];
-            packing::encode(&value, ty, &mut out).unwrap_or_else(|why| panic!("`{name}`: {why}"));
-        }
-        assert_eq!(factor(&Material::default(), "base_colour_factor"), None);
-    }
-
-    #[test]
-    fn textures_turn_counter_clockwise_as_they_are_seen() {
-        let quarter = UvTransform { rotation: std::f32::consts::FRAC_PI_2, ..UvTransform::default() };
-        // v grows downwards: u = (1, 0) turned by a quarter points up, to (0, -1).
-        let up: Vec<f64> = transform(&quarter).numbers().take(2).collect();
-        assert!(up[0].abs() < 1e-6 && (up[1] + 1.0).abs() < 1e-6, "{up:?}");
-    }
 }

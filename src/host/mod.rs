@@ -6,6 +6,7 @@
 
 mod assets;
 mod build;
+mod content;
 mod draw;
 pub mod dump;
 mod frames;
@@ -24,9 +25,10 @@ mod state;
 
 pub use assets::{Cache, Particles};
 pub use build::{Builder, Built, Planned, Session};
+pub use content::Content;
 pub use draw::{Drawn, Moment};
 pub use inputs::Input;
 pub use live::{Due, Live, Read};
-pub use load::{Content, Job, Loaded, load};
+pub use load::{Job, Loaded, load};
 pub use sequence::{Player, Track, When};
 pub use source::renderable;

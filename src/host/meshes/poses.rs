@@ -1,0 +1,104 @@
+//! Where bodies stand at a time: the animation that each file of a scene plays.
+
+use std::sync::Arc;
+
+use glam::Mat4;
+
+use super::Meshes;
+use crate::diagnostic::{Code, Diagnostic};
+use crate::plan::meshes::INSTANCE_BYTES;
+use crate::scene::meshes::{Model, Pose};
+use crate::scene::{MeshEntry, Playing};
+
+/// At how many times of its animation a body is looked at for its bounds.
+const POSES: u32 = 64;
+
+/// Where bodies that move stand, with the memory that it takes to tell.
+#[derive(Debug, Default)]
+pub(in crate::host) struct Standing {
+    /// The time in seconds at which they stand on the device.
+    pub at_s: Option<f64>,
+    poses: Vec<Pose>,
+    /// Items of `x.instances`.
+    pub bytes: Vec<u8>,
+}
+
+/// A mesh file of the scene, and what moves its nodes.
+#[derive(Debug)]
+pub(super) struct Entry {
+    pub model: Arc<Model>,
+    pub animation: Option<usize>,
+    pub loops: bool,
+    pub start_s: f64,
+}
+
+impl Meshes {
+    /// Items of `x.instances` at a time in seconds.
+    pub(in crate::host) fn instances(&self, time_s: f64) -> Vec<u8> {
+        let mut standing = Standing::default();
+        self.instances_into(time_s, &mut standing);
+        standing.bytes
+    }
+
+    /// The same into memory that is there.
+    pub(in crate::host) fn instances_into(&self, time_s: f64, standing: &mut Standing) {
+        let Standing { poses, bytes, .. } = standing;
+        if poses.len() < self.entries.len() {
+            poses.resize_with(self.entries.len(), Pose::default);
+        }
+        for (entry, pose) in self.entries.iter().zip(&mut *poses) {
+            entry.pose_into(time_s, pose);
+        }
+        bytes.clear();
+        bytes.reserve(self.instances.len() * INSTANCE_BYTES as usize);
+        for instance in &self.instances {
+            let matrix = poses[instance.entry].world[instance.node].to_cols_array();
+            bytes.extend_from_slice(bytemuck::bytes_of(&matrix));
+            let words = [instance.body, instance.first_triangle, instance.triangles, instance.material];
+            bytes.extend_from_slice(bytemuck::bytes_of(&words));
+        }
+    }
+}
+
+impl Entry {
+    /// The poses that its animation goes through, at even times.
+    pub fn poses(&self) -> Vec<Vec<Mat4>> {
+        let animation = self.animation.and_then(|a| self.model.animations.get(a));
+        let Some(duration_s) = animation.map(|a| f64::from(a.duration_s)) else { return vec![self.pose(0.0)] };
+        (0..=POSES).map(|i| self.model.pose(self.animation, duration_s * f64::from(i) / f64::from(POSES))).collect()
+    }
+
+    /// Body from node, for each node, at a time of the scene.
+    pub fn pose(&self, time_s: f64) -> Vec<Mat4> {
+        let mut pose = Pose::default();
+        self.pose_into(time_s, &mut pose);
+        pose.world
+    }
+
+    fn pose_into(&self, time_s: f64, pose: &mut Pose) {
+        let duration_s = self.animation.and_then(|a| self.model.animations.get(a)).map_or(0.0, |a| a.duration_s);
+        let mut at_s = time_s + self.start_s;
+        if self.loops && duration_s > 0.0 {
+            at_s = at_s.rem_euclid(f64::from(duration_s));
+        }
+        self.model.pose_into(self.animation, at_s, pose);
+    }
+}
+
+/// Which animation an entry plays, whether over and over, and from where.
+pub(super) fn animation(entry: &MeshEntry, model: &Model) -> Result<(Option<usize>, bool, f64), Diagnostic> {
+    let Playing::Plays { animation, loops, start_s } = &entry.playing else { return Ok((None, false, 0.0)) };
+    let Some(name) = animation else {
+        return Ok(((!model.animations.is_empty()).then_some(0), *loops, *start_s));
+    };
+    if let Some(found) = model.animation(&name.value) {
+        return Ok((Some(found), *loops, *start_s));
+    }
+    let names: Vec<&str> = model.animations.iter().map(|a| a.name.as_str()).collect();
+    let message = format!("`{}` has no animation `{}`", entry.file.value, name.value);
+    let error = Diagnostic::error(Code::UNKNOWN_NAME, message).at(name.span, "asked for here");
+    Err(match names.as_slice() {
+        [] => error.hint("the file has no animations"),
+        names => error.nearest(&name.value, names.iter().copied()).hint(format!("it has {}", names.join(", "))),
+    })
+}
