@@ -1,11 +1,15 @@
 //! Particle files: every format gives back what a writer put in, bit for bit; wrong files give an
-//! error with a place; hostile ones neither panic nor take memory that they do not justify.
+//! error with a place; hostile ones, and hostile pictures, neither panic nor take memory that they do not justify.
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
+#[path = "support/fuzz.rs"]
+mod fuzz;
 #[path = "formats/hostile.rs"]
 mod hostile;
 #[path = "formats/oracle.rs"]
 mod oracle;
+#[path = "formats/pictures.rs"]
+mod pictures;
 #[path = "formats/shared.rs"]
 mod shared;
 #[path = "formats/writers.rs"]
@@ -468,7 +472,7 @@ mod spacing {
     use super::estimate_radius;
 
     fn random(count: usize, seed: u64) -> Vec<[f32; 3]> {
-        let mut random = super::hostile::Random(seed);
+        let mut random = super::fuzz::Random(seed);
         (0..count).map(|_| std::array::from_fn(|_| random.below(1 << 20) as f32 / 1024.0)).collect()
     }
 

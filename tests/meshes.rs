@@ -6,6 +6,8 @@
 mod build;
 #[path = "meshes/forms.rs"]
 mod forms;
+#[path = "support/fuzz.rs"]
+mod fuzz;
 #[path = "support/golden.rs"]
 mod golden;
 #[path = "meshes/hostile.rs"]

@@ -34,6 +34,11 @@ pub struct ImageError {
 
 /// Width and height end here (WebGPU's default ends at 8,192, many devices at 16,384).
 pub const LARGEST_SIDE: u32 = 16_384;
+/// Texels that one byte of a file can stand for: eight of one bit, packed as tightly as deflate does. A file that claims
+/// more is not believed.
+const MOST_TEXELS_A_BYTE: u64 = 8 * 1032;
+/// Texels that are believed of any file.
+const FEW_TEXELS: u64 = 1 << 20;
 /// Bytes that decoding may take.
 const LARGEST_MEMORY: u64 = 2 << 30;
 
@@ -80,6 +85,11 @@ fn decode(bytes: &[u8], known: &[ImageFormat], memory: u64) -> Result<DynamicIma
     }
     if u64::from(width) * u64::from(height) * 4 > memory {
         return Err(fault(format!("{width} x {height} pixels are more than there is room for")));
+    }
+    let justified = (bytes.len() as u64).saturating_mul(MOST_TEXELS_A_BYTE).saturating_add(FEW_TEXELS);
+    if u64::from(width) * u64::from(height) > justified {
+        let length = bytes.len();
+        return Err(fault(format!("the header says {width} x {height} pixels, which {length} bytes cannot hold")));
     }
     let mut reader = ImageReader::with_format(Cursor::new(bytes), format);
     let mut limits = Limits::default();
@@ -215,6 +225,11 @@ mod tests {
         bytes[29..33].copy_from_slice(&crc.to_be_bytes());
         let error = read(&bytes).expect_err("too wide");
         assert_eq!(error.message, "the header says 60000 x 2 pixels; a picture has 1 to 16384 each way");
+        bytes[16..24].copy_from_slice(&[0, 0, 0x40, 0, 0, 0, 0x40, 0]);
+        let crc = crc32(&bytes[12..29]);
+        bytes[29..33].copy_from_slice(&crc.to_be_bytes());
+        let message = format!("the header says 16384 x 16384 pixels, which {} bytes cannot hold", bytes.len());
+        assert_eq!(read(&bytes).expect_err("too much").message, message);
     }
 
     fn crc32(bytes: &[u8]) -> u32 {

@@ -3,32 +3,14 @@
 
 use std::path::Path;
 use std::sync::Arc;
-use std::time::{Duration, Instant};
 
 use meniscus::files::MemoryFiles;
 use meniscus::scene::meshes::{self, Model};
 use serde_json::json;
 
 use super::build::{Builder, F32, U8, U16, bytes, png};
+use super::fuzz::{self, Random, damage, peak};
 use super::surface::{ply, vtk};
-
-/// The numbers of a test: the same in each run.
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> u64 {
-        // splitmix64
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ z >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ z >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ z >> 31
-    }
-
-    fn below(&mut self, end: usize) -> usize {
-        (self.next() % end.max(1) as u64) as usize
-    }
-}
 
 /// A glTF with something of everything.
 fn rich() -> Builder {
@@ -96,8 +78,10 @@ fn seeds() -> Vec<(&'static str, Vec<u8>, MemoryFiles)> {
         ("a.mtl", mtl.as_bytes().to_vec(), pictures.with("a.obj", obj)),
         ("a.vtk", grid(true), MemoryFiles::default()),
         ("a.vtk", grid(false), MemoryFiles::default()),
-        ("a.ply", faces(true), MemoryFiles::default()),
-        ("a.ply", faces(false), MemoryFiles::default()),
+        ("a.vtk", five(), MemoryFiles::default()),
+        ("a.ply", faces(None), MemoryFiles::default()),
+        ("a.ply", faces(Some(false)), MemoryFiles::default()),
+        ("a.ply", faces(Some(true)), MemoryFiles::default()),
         ("data.bin", rich.binary.clone(), rich.files()),
     ]
 }
@@ -119,54 +103,37 @@ fn grid(is_text: bool) -> Vec<u8> {
     file
 }
 
-/// Faces of PLY.
-fn faces(is_text: bool) -> Vec<u8> {
+/// Polygons of legacy VTK 5.1, as binary.
+fn five() -> Vec<u8> {
+    let mut file = b"# vtk DataFile Version 5.1\nt\nBINARY\nDATASET POLYDATA\nPOINTS 3 double\n".to_vec();
+    [0.0f64, 0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 1.0, 0.0].iter().for_each(|x| file.extend(x.to_be_bytes()));
+    file.extend(b"\nPOLYGONS 3 6\nOFFSETS vtktypeint64\n");
+    [0, 3, 6].iter().for_each(|x: &i64| file.extend(x.to_be_bytes()));
+    file.extend(b"\nCONNECTIVITY vtktypeint64\n");
+    [0, 1, 2, 2, 1, 0].iter().for_each(|x: &i64| file.extend(x.to_be_bytes()));
+    file.extend(b"\nPOINT_DATA 3\nTEXTURE_COORDINATES t 2 float\n");
+    [0.0f32; 6].iter().for_each(|x| file.extend(x.to_be_bytes()));
+    file
+}
+
+/// Faces of PLY: as text, or binary with either end of a number first.
+fn faces(is_big: Option<bool>) -> Vec<u8> {
     let more = "element face 2\nproperty list uchar int vertex_indices\nend_header\n";
-    if is_text {
+    let Some(is_big) = is_big else {
         let rows = "0 0 0 1 2 3\n1 0 0 1 2 3\n1 1 0 1 2 3\n0 1 0 1 2 3\n5 5 5 1 2 3\n";
         return format!("{}{rows}4 0 1 2 3\n3 0 1 4\n", ply("ascii", more)).into_bytes();
-    }
-    let mut file = ply("binary_little_endian", more).into_bytes();
+    };
+    let word = |bits: u32| if is_big { bits.to_be_bytes() } else { bits.to_le_bytes() };
+    let mut file = ply(if is_big { "binary_big_endian" } else { "binary_little_endian" }, more).into_bytes();
     for row in 0..5_u8 {
-        [f32::from(row), f32::from(row * row), 1.0].iter().for_each(|x| file.extend(x.to_le_bytes()));
+        [f32::from(row), f32::from(row * row), 1.0].iter().for_each(|x| file.extend(word(x.to_bits())));
         file.extend([1, 2, 3]);
     }
     for face in [&[0, 1, 2, 3][..], &[0, 1, 4]] {
         file.push(face.len() as u8);
-        face.iter().for_each(|index: &i32| file.extend(index.to_le_bytes()));
+        face.iter().for_each(|index: &u32| file.extend(word(*index)));
     }
     file
-}
-
-/// Damages a file in one of the ways that disks, transfers and ill will do.
-fn damage(random: &mut Random, bytes: &mut Vec<u8>) {
-    for _ in 0..1 + random.below(4) {
-        let at = random.below(bytes.len());
-        let end = (at + 1 + random.below(16)).min(bytes.len());
-        let digit = bytes[at..].iter().position(u8::is_ascii_digit).map_or(at, |found| at + found);
-        match random.below(10) {
-            0 => bytes[at] ^= 1 << random.below(8),
-            1 => bytes[at] = random.next() as u8,
-            2 => bytes[at..end].fill([0, 0x7f, 0xff, b'9'][random.below(4)]),
-            3 => bytes.truncate(at.max(1)),
-            4 => drop(bytes.drain(at..end)),
-            5 => {
-                let part = bytes[at..end].to_vec();
-                bytes.splice(at..at, part);
-            }
-            6 => drop(bytes.splice(digit..digit, *b"99999999")),
-            // One number or one word for another: what still parses goes deepest.
-            7 | 8 => bytes[digit] = b"0123456789"[random.below(10)],
-            _ => {
-                let from = random.below(bytes.len());
-                let part = bytes[from..(from + 12).min(bytes.len())].to_vec();
-                bytes.splice(at..end, part);
-            }
-        }
-        if bytes.is_empty() {
-            bytes.push(0);
-        }
-    }
 }
 
 /// Bytes of all that was made.
@@ -206,7 +173,7 @@ fn check(name: &str, model: &Model, justified: usize) {
 }
 
 /// The file that one reads to come to a file.
-fn entry(name: &'static str) -> &'static str {
+fn entry(name: &str) -> &str {
     match name {
         "a.mtl" => "a.obj",
         "data.bin" => "a.gltf",
@@ -214,7 +181,7 @@ fn entry(name: &'static str) -> &'static str {
     }
 }
 
-fn attempt(name: &'static str, bytes: Vec<u8>, files: &MemoryFiles) {
+fn attempt(name: &str, bytes: Vec<u8>, files: &MemoryFiles) {
     let files = files.clone().with(name, &bytes);
     let path = Path::new(entry(name));
     let bundle = meshes::gather(&files, path, files.0[path].clone());
@@ -224,40 +191,28 @@ fn attempt(name: &'static str, bytes: Vec<u8>, files: &MemoryFiles) {
     }
 }
 
-/// The most address space that this process has had, where the system tells.
-fn peak() -> Option<usize> {
-    let status = std::fs::read_to_string("/proc/self/status").ok()?;
-    let line = status.lines().find_map(|line| line.strip_prefix("VmPeak:"))?;
-    Some(line.trim().strip_suffix("kB")?.trim().parse::<usize>().ok()? * 1024)
-}
-
 #[test]
 fn damaged_files_neither_panic_nor_take_memory() {
     const TIMES: u32 = 2000;
     let before = peak();
-    // A longer run: seconds, and another beginning for each.
-    let seconds: Option<u64> = std::env::var("MENISCUS_FUZZ_SECONDS").ok().and_then(|text| text.parse().ok());
-    let seed = if seconds.is_some() { std::process::id().into() } else { 7 };
-    let until = seconds.map(|seconds| Instant::now() + Duration::from_secs(seconds));
-    let mut random = Random(seed);
-    let (seeds, mut runs) = (seeds(), 0_u64);
-    loop {
-        for (name, seed, files) in &seeds {
-            for _ in 0..TIMES {
-                let mut bytes = seed.clone();
-                damage(&mut random, &mut bytes);
-                attempt(name, bytes, files);
-                runs += 1;
-            }
-        }
-        if until.is_none_or(|until| Instant::now() > until) {
-            break;
+    let mut random = Random(7);
+    for (name, seed, files) in &seeds() {
+        for _ in 0..TIMES {
+            let mut bytes = seed.clone();
+            damage(&mut random, &mut bytes);
+            attempt(name, bytes, files);
         }
     }
-    eprintln!("{runs} damaged files, from {seed}");
     if let (Some(before), Some(after)) = (before, peak()) {
         assert!(after - before < 2 << 30, "the peak rose by {} MiB", (after - before) >> 20);
     }
+}
+
+/// `MENISCUS_FUZZ_SECONDS=600 cargo test --test meshes fuzz -- --nocapture`.
+#[test]
+fn fuzz() {
+    let seeds = seeds().into_iter().map(|(name, seed, files)| (name, (seed, files))).collect();
+    fuzz::fuzz(seeds, |(seed, _)| seed, |name, (_, files), bytes| attempt(name, bytes.to_vec(), files));
 }
 
 #[test]
