@@ -89,7 +89,15 @@ fn play(folder: &Path, count: usize) {
         black_box(particles::read(&path, &DiskFiles.read(&path).unwrap()).unwrap());
     });
     let (input, frames) = ("particles".to_owned(), 0..=FRAMES - 1);
-    let track = Track { input, pattern: pattern.clone(), frames, rate: 25.0, radius_m: 0.01, bounds: None };
+    let track = Track {
+        input,
+        pattern: pattern.clone(),
+        frames,
+        rate: 25.0,
+        taken: particles::Taken::default(),
+        radius_m: 0.01,
+        bounds: None,
+    };
     let mut player = Player::new(&[track], When::Frame(0), DiskFiles);
     let (began, mut longest_ms) = (Instant::now(), 0.0_f64);
     for n in 0..FRAMES {

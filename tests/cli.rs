@@ -4,6 +4,8 @@
 
 #[path = "cli/bench.rs"]
 mod bench;
+#[path = "cli/files.rs"]
+mod files;
 #[path = "support/golden.rs"]
 mod golden;
 #[path = "support/project.rs"]
@@ -78,7 +80,7 @@ fn unreadable_input_ends_with_2_and_names_file_and_place() {
         ("nothing.vtk", vec!["there is no file `nothing.vtk`"]),
         ("scenes/nothing.ron", vec!["there is no file `scenes/nothing.ron`"]),
         ("scenes", vec!["`scenes` is a folder"]),
-        ("note.txt", vec!["`note.txt` is neither a scene (.ron) nor a particle file", ".bgeo"]),
+        ("note.txt", vec!["`note.txt` is neither a scene (.ron) nor a particle or mesh file", ".bgeo"]),
         ("empty.ply", vec!["`empty.ply`: byte 0: the file is empty"]),
         ("cut.csv", vec!["`cut.csv`: line 3"]),
         ("lying.ply", vec!["`lying.ply`: "]),

@@ -19,7 +19,11 @@ mod wrong;
 
 use std::path::Path;
 
-use meniscus::scene::particles::{Kind, ParticleSet, ReadError, Values, estimate_radius, known_extension, read};
+use glam::DVec3;
+use meniscus::scene::particles::{
+    Kind, ParticleSet, ReadError, Taken, Values, estimate_radius, known_extension, read, read_as,
+};
+use meniscus::scene::placement::{Placement, Up};
 use writers::{Legacy, Mode, Order, Packing, Rows, Sample, Store, Xml};
 
 fn parse(name: &str, bytes: &[u8]) -> Result<ParticleSet, ReadError> {
@@ -456,6 +460,54 @@ fn conversions_to_lanes_take_the_nearest_value() {
     assert_eq!(big.to_i32(), [i32::MIN, i32::MAX, 7]);
     assert_eq!(big.to_u32(), [0, u32::MAX, 7]);
     assert_eq!(big.to_f32(), [-5.0e9, 5.0e9, 7.0]);
+}
+
+#[test]
+fn a_scene_turns_scales_moves_and_renames() {
+    let sample = Sample::new(6);
+    let how = Legacy { binary: true, five: true, poly: false };
+    let bytes = writers::legacy_vtk(&sample, how);
+    let plain = parse("a.vtk", &bytes).unwrap();
+    assert_eq!(read_as(Path::new("a.vtk"), &bytes, &Taken::default()).unwrap(), plain, "nothing is rounded");
+
+    let placement = Placement { position: DVec3::new(1.0, 2.0, 3.0), ..Placement::of_file(Up::Z, 0.5) };
+    let names = vec![("speed".to_owned(), "velocity".to_owned()), ("mass".to_owned(), "the mass".to_owned())];
+    let set = read_as(Path::new("a.vtk"), &bytes, &Taken { placement, names }).unwrap();
+    let half = |v: [f32; 3]| [0.5 * f64::from(v[0]), 0.5 * f64::from(v[2]), -0.5 * f64::from(v[1])];
+    for (row, found) in sample.position.iter().zip(set.positions().iter()) {
+        let [x, y, z] = half(*row);
+        assert_eq!(*found, [(1.0 + x) as f32, (2.0 + y) as f32, (3.0 + z) as f32]);
+    }
+    assert_eq!(set.radius, plain.radius.map(|radius| radius / 2.0));
+    assert!(set.attribute("velocity").is_none());
+    expect(&set, "mass", 1, &plain.attribute("the mass").unwrap().values);
+    expect(&set, "id", 1, &Values::I32(sample.id.clone()));
+    // Under a name of its own it is not known for a velocity.
+    expect(&set, "speed", 3, &velocity(&sample));
+    let names = vec![("density".to_owned(), "the mass".to_owned())];
+    let set = read_as(Path::new("a.vtk"), &bytes, &Taken { placement, names }).unwrap();
+    let turned: Vec<f32> = sample.velocity.iter().flat_map(|v| half(*v).map(|x| x as f32)).collect();
+    assert_eq!(set.attribute("velocity").unwrap().to_f32(), turned);
+    let lengths = |set: &ParticleSet| (0..3).map(|axis| set.max[axis] - set.min[axis]).collect::<Vec<_>>();
+    let (before, after) = (lengths(&plain), lengths(&set));
+    assert!((after[1] / before[2] - 0.5).abs() < 1e-5, "bounds are of what was placed: {before:?} {after:?}");
+}
+
+#[test]
+fn lengths_and_directions_go_along_with_places() {
+    let text =
+        b"x,y,z,v_x,v_y,v_z,normal_x,normal_y,normal_z,pscale,color_x,color_y,color_z\n1,2,3,0,0,4,0,0,1,2,7,8,9\n";
+    let taken = Taken { placement: Placement::of_file(Up::Z, 0.001), names: vec![] };
+    let set = read_as(Path::new("a.csv"), text, &taken).unwrap();
+    assert_eq!(*set.positions(), [[0.001, 0.003, -0.002]]);
+    for (name, expected) in [("v", [0.0, 0.004, 0.0]), ("normal", [0.0, 1.0, 0.0]), ("color", [7.0, 8.0, 9.0])] {
+        assert_eq!(set.attribute(name).unwrap().to_f32(), expected, "{name}");
+    }
+    assert_eq!((set.radius, set.attribute("pscale").unwrap().to_f32()), (Some(0.002), vec![0.002]));
+    // What becomes too far for f32 goes, as what was too far in the file.
+    let far = Taken { placement: Placement::of_file(Up::Y, 1e9), names: vec![] };
+    let set = read_as(Path::new("a.csv"), b"x,y,z\n1e30,0,0\n1,2,3\n", &far).unwrap();
+    assert_eq!((set.count, set.dropped), (1, 1));
 }
 
 #[test]

@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
 use crate::plan::model::Policy;
+use crate::scene::placement::Up;
 
 /// Data-driven render graphs: checked, planned, run and reloaded.
 #[derive(Debug, Parser)]
@@ -40,9 +41,9 @@ pub enum Command {
 /// What `render`, `watch` and `bench` share.
 #[derive(Args, Clone, Debug)]
 pub struct SceneArgs {
-    /// A scene (.ron), or a particle file or a numbered sequence of them (dd_####.bgeo), which then gets a default camera,
-    /// light and graph
-    #[arg(value_name = "SCENE|PARTICLES")]
+    /// A scene (.ron), or a particle file, a numbered sequence of them (dd_####.bgeo) or a mesh file (.glb, .gltf, .obj),
+    /// which then gets a default camera, light and graph
+    #[arg(value_name = "SCENE|FILE")]
     pub scene: PathBuf,
     /// The graph to use in place of the scene's
     #[arg(long, value_name = "GRAPH")]
@@ -53,6 +54,12 @@ pub struct SceneArgs {
     /// Radius of a particle in metres, in place of the file's or the estimated one
     #[arg(long, value_name = "METRES", value_parser = radius, allow_negative_numbers = true)]
     pub radius: Option<f64>,
+    /// Which axis points up in the particle or mesh file that is named here
+    #[arg(long, value_enum, value_name = "AXIS")]
+    pub up: Option<UpArg>,
+    /// Metres to a unit of that file: 0.001 for millimetres
+    #[arg(long, value_name = "METRES", value_parser = scale, allow_negative_numbers = true)]
+    pub scale: Option<f64>,
     /// Size of the picture in pixels
     #[arg(long, value_name = "WxH", value_parser = size)]
     pub size: Option<[u32; 2]>,
@@ -106,6 +113,21 @@ pub enum PolicyArg {
     Auto,
     Keep,
     Smallest,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum UpArg {
+    Y,
+    Z,
+}
+
+impl UpArg {
+    pub fn axis(self) -> Up {
+        match self {
+            Self::Y => Up::Y,
+            Self::Z => Up::Z,
+        }
+    }
 }
 
 #[derive(Args, Clone, Debug)]
@@ -314,6 +336,11 @@ fn number(text: &str) -> Result<f64, String> {
 fn radius(text: &str) -> Result<f64, String> {
     let radius = number(text)?;
     if radius.is_finite() && radius > 0.0 { Ok(radius) } else { Err("a radius is finite and above 0".into()) }
+}
+
+fn scale(text: &str) -> Result<f64, String> {
+    let scale = number(text)?;
+    if scale.is_finite() && scale > 0.0 { Ok(scale) } else { Err("a scale is finite and above 0".into()) }
 }
 
 fn fov(text: &str) -> Result<f64, String> {

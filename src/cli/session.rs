@@ -2,7 +2,7 @@
 
 use std::thread::{self, JoinHandle};
 
-use super::args::{SceneArgs, WhenArgs};
+use super::args::{SceneArgs, UpArg, WhenArgs};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::engine::{Gpu, GpuOptions};
 pub use crate::host::picture::numbered;
@@ -15,6 +15,8 @@ pub fn job(args: &SceneArgs) -> Job {
         graph: args.graph.clone(),
         particles: args.particles.clone(),
         radius_m: args.radius,
+        up: args.up.map(UpArg::axis),
+        scale: args.scale,
         size: args.size,
         set: args.set.clone(),
         eye: args.eye,

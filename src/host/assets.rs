@@ -11,7 +11,7 @@ use super::models::Models;
 use crate::diagnostic::{Code, Diagnostic, Diagnostics, Span};
 use crate::scene::cube;
 use crate::scene::image::Image;
-use crate::scene::particles::{self, Attribute, ParticleSet, Values};
+use crate::scene::particles::{self, Attribute, ParticleSet, Taken, Values};
 
 /// Particles with a radius.
 #[derive(Debug)]
@@ -80,9 +80,10 @@ struct Decoded {
 }
 
 /// What a file is to be decoded as.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum AssetKind {
     Particles {
+        taken: Taken,
         /// Whether a radius is looked for where the file has none.
         estimate: bool,
     },
@@ -114,9 +115,9 @@ impl Cache {
                 Work::Done(known.asset.clone(), known.found.clone())
             }
             _ => {
-                let path = path.to_owned();
+                let (path, kind) = (path.to_owned(), kind.clone());
                 Work::Running(thread::spawn(move || match kind {
-                    AssetKind::Particles { estimate } => decode_particles(&path, &bytes, estimate),
+                    AssetKind::Particles { taken, estimate } => decode_particles(&path, &bytes, &taken, estimate),
                     AssetKind::Image => decode_image(&path, &bytes),
                 }))
             }
@@ -202,8 +203,13 @@ impl Cache {
     }
 }
 
-pub(super) fn decode_particles(path: &Path, bytes: &[u8], estimate: bool) -> Result<(Asset, Diagnostics), Diagnostic> {
-    let set = particles::read(path, bytes).map_err(|error| {
+pub(super) fn decode_particles(
+    path: &Path,
+    bytes: &[u8],
+    taken: &Taken,
+    estimate: bool,
+) -> Result<(Asset, Diagnostics), Diagnostic> {
+    let set = particles::read_as(path, bytes, taken).map_err(|error| {
         let failed = Diagnostic::error(Code::ASSET, format!("`{}`: {error}", path.display()));
         error.hint.iter().fold(failed, Diagnostic::hint)
     })?;

@@ -20,6 +20,7 @@ use crate::graph::rows::Row;
 use crate::graph::value::Value;
 use crate::plan::model::{InputInfo, Texture};
 use crate::scene::image::Image;
+use crate::scene::particles::Taken;
 use crate::scene::sequence::Pattern;
 use crate::scene::{Light, PointerPath, Scene, find};
 
@@ -45,6 +46,7 @@ pub(super) struct ParticleFile {
     pub pending: Option<Pending>,
     /// Metres, where somebody says.
     pub radius_m: Option<f64>,
+    pub taken: Taken,
     /// Where somebody says.
     pub bounds: Option<[[f32; 3]; 2]>,
     /// The sequence that the file is a frame of.
@@ -95,7 +97,7 @@ impl Offer {
     pub fn decode(self, graph: Option<&Graph>, cache: &mut Cache, diagnostics: &mut Diagnostics) -> Decoded {
         let mut decoded = Decoded::default();
         for file in self.particles {
-            let ParticleFile { name, path, pending, radius_m: said, bounds, sequence } = file;
+            let ParticleFile { name, path, pending, radius_m: said, taken, bounds, sequence } = file;
             let name = name.map_or_else(|| only_particles(graph), Ok);
             let asset = pending.and_then(|pending| cache.finish(pending, diagnostics));
             let name = match name {
@@ -116,6 +118,7 @@ impl Offer {
                         pattern,
                         frames,
                         rate,
+                        taken,
                         radius_m,
                         bounds,
                     }));

@@ -13,12 +13,13 @@ use super::content::Content;
 use super::inputs::{self, Input, Offer};
 use super::params::{self, Given, Raw};
 use super::sequence::{Track, When};
-use super::source;
+use super::source::{self, Brings};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics, Sources};
 use crate::files::{self, Files, Kind};
 use crate::graph::value::Value;
 use crate::plan::model::{MemoryRequest, Policy};
 use crate::program::{self, Program, missing_file};
+use crate::scene::placement::{Placement, Up};
 use crate::scene::{Camera, Item, MeshEntry, PointerPath, Scene, framing};
 use crate::syntax::{Sp, first_word};
 
@@ -41,6 +42,10 @@ pub struct Job {
     pub particles: Option<String>,
     /// Metres, in place of any other radius.
     pub radius_m: Option<f64>,
+    /// What points up in the file of particles or meshes that is named beside a scene or in place of one.
+    pub up: Option<Up>,
+    /// Metres to a unit of that file.
+    pub scale: Option<f64>,
     /// Pixels, in place of the scene's.
     pub size: Option<[u32; 2]>,
     /// Parameters by instance path, in place of the scene's values.
@@ -69,6 +74,13 @@ pub struct Job {
     pub memory_budget: Option<u64>,
     /// One picture after another is made, so that sequences move from each to the next.
     pub plays: bool,
+}
+
+impl Job {
+    /// Where the numbers of a file stand that is named beside a scene or in place of one.
+    pub fn placement(&self) -> Placement {
+        Placement::of_file(self.up.unwrap_or_default(), self.scale.unwrap_or(1.0))
+    }
 }
 
 /// What loading gave.
@@ -104,11 +116,12 @@ struct Loader<'a> {
 
 impl Loader<'_> {
     fn content(&mut self) -> Option<Content> {
-        let source = source::read(self.files, &self.job.source, self.sources, &mut self.diagnostics)?;
+        let source = source::read(self.files, self.job, self.sources, &mut self.diagnostics)?;
         let mut scene = source.scene;
+        self.needs_a_file(&source.brings);
         self.add_given(&mut scene);
         // Files decode on other threads while the graphs are read.
-        let (particles, images) = (self.particles(&scene, source.is_particles), self.images(&scene));
+        let (particles, images) = (self.particles(&scene, source.brings == Brings::Particles), self.images(&scene));
         let (meshes, models) = self.meshes(&scene);
         let offer = Offer { particles, images, meshes, models };
         let program = self.graph(&scene);
@@ -147,6 +160,16 @@ impl Loader<'_> {
             memory,
             stats: self.job.stats,
         })
+    }
+
+    /// `--up` and `--scale` are of a file that the command line names; a scene says its own.
+    fn needs_a_file(&mut self, brings: &Brings) {
+        let said = self.job.up.map(|_| "--up").or(self.job.scale.map(|_| "--scale"));
+        if let (Some(said), Brings::Scene, None) = (said, brings, &self.job.particles) {
+            let message = format!("`{said}` is of a file that the command line names, and there is none");
+            let hint = "in a scene, `up:` and `scale:` stand beside `file:`";
+            self.diagnostics.push(Diagnostic::error(Code::USAGE, message).hint(hint));
+        }
     }
 
     /// What somebody gives beside a scene counts as if the scene said it.

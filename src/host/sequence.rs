@@ -17,6 +17,7 @@ use super::draw::Moment;
 use super::inputs::Input;
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::files::Files;
+use crate::scene::particles::Taken;
 use crate::scene::sequence::Pattern;
 
 /// Frames that are decoded before they are asked for.
@@ -31,6 +32,7 @@ pub struct Track {
     pub frames: RangeInclusive<u64>,
     /// Frames a second.
     pub rate: f64,
+    pub taken: Taken,
     /// Metres, of all frames.
     pub radius_m: f64,
     /// In place of each frame's own bounds.
@@ -224,7 +226,7 @@ pub(super) fn held(why: Diagnostic, frame: u64, shown: u64) -> Diagnostic {
 fn decode(files: &dyn Files, track: &Track, frame: u64, told: &mut Diagnostics) -> Result<Arc<Particles>, Diagnostic> {
     let path = track.pattern.path(frame);
     let bytes = files.read(&path).map_err(|error| unreadable(&path, &error))?;
-    let (asset, found) = decode_particles(&path, &bytes, false)?;
+    let (asset, found) = decode_particles(&path, &bytes, &track.taken, false)?;
     let Asset::Particles(set, _) = asset else {
         return Err(Diagnostic::error(Code::ASSET, format!("`{}` holds no particles", path.display())));
     };
@@ -253,7 +255,15 @@ mod tests {
 
     fn track(rate: f64) -> Track {
         let pattern = Pattern::of(Path::new("f/p_##.csv")).expect("a pattern");
-        Track { input: "particles".into(), pattern, frames: 3..=9, rate, radius_m: 0.5, bounds: None }
+        Track {
+            input: "particles".into(),
+            pattern,
+            frames: 3..=9,
+            rate,
+            taken: Taken::default(),
+            radius_m: 0.5,
+            bounds: None,
+        }
     }
 
     /// Frames 3 to 9 without 5 and 6; 8 is damaged. Frame n has n particles.

@@ -3,8 +3,12 @@
 use std::path::Path;
 use std::sync::Arc;
 
+use glam::DMat4;
+
+use super::load::Job;
 use crate::diagnostic::{Code, Diagnostic, Diagnostics, Sources};
 use crate::files::{Files, LIBRARY, library_file};
+use crate::scene::placement::Placement;
 use crate::scene::sequence::Pattern;
 use crate::scene::{self, Item, MeshEntry, Scene, particles};
 use crate::syntax::Sp;
@@ -19,7 +23,15 @@ const MESHES: &str = "meshes";
 #[derive(Debug)]
 pub(super) struct Source {
     pub scene: Scene,
-    pub is_particles: bool,
+    pub brings: Brings,
+}
+
+/// What kind of file was named.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Brings {
+    Scene,
+    Particles,
+    Mesh,
 }
 
 /// Whether a path names a scene file by its extension.
@@ -30,10 +42,11 @@ fn is_scene(path: &Path) -> bool {
 /// Reads the file that was named.
 pub(super) fn read(
     files: &dyn Files,
-    path: &Path,
+    job: &Job,
     sources: &mut Sources,
     diagnostics: &mut Diagnostics,
 ) -> Option<Source> {
+    let path = &job.source;
     if let Err(error) = renderable(files, path) {
         diagnostics.push(error);
         return None;
@@ -41,14 +54,14 @@ pub(super) fn read(
     if is_scene(path) {
         let bytes = named(files, path).map_err(|error| diagnostics.push(error)).ok()?;
         let scene = scene::read(path, &bytes, sources, diagnostics)?;
-        Some(Source { scene, is_particles: false })
+        Some(Source { scene, brings: Brings::Scene })
     } else if is_mesh(path) {
         let mut scene = default_scene(sources, diagnostics)?;
-        stand(&mut scene, path);
-        Some(Source { scene, is_particles: false })
+        stand(&mut scene, job);
+        Some(Source { scene, brings: Brings::Mesh })
     } else {
         let scene = default_scene(sources, diagnostics)?;
-        Some(Source { scene, is_particles: true })
+        Some(Source { scene, brings: Brings::Particles })
     }
 }
 
@@ -58,10 +71,12 @@ fn is_mesh(path: &Path) -> bool {
 }
 
 /// Puts a mesh file into a scene that has no other.
-fn stand(scene: &mut Scene, path: &Path) {
+fn stand(scene: &mut Scene, job: &Job) {
     let said = |value: String| Sp { value, span: scene.span };
-    let file = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
-    let value = vec![MeshEntry::of(said(file.display().to_string()))];
+    let file = std::path::absolute(&job.source).unwrap_or_else(|_| job.source.clone());
+    let Placement { scale, turn, .. } = job.placement();
+    let world_from_body = vec![DMat4::from_mat3(turn * scale)];
+    let value = vec![MeshEntry { world_from_body, ..MeshEntry::of(said(file.display().to_string())) }];
     scene.meshes = vec![Item { name: said(MESHES.into()), value, span: scene.span }];
 }
 
@@ -83,9 +98,10 @@ pub fn renderable(files: &dyn Files, path: &Path) -> Result<(), Diagnostic> {
     if is_scene(path) || particles::known_extension(path) || is_mesh(path) {
         return Ok(());
     }
-    let message = format!("`{}` is neither a scene (.ron) nor a particle file", path.display());
+    let message = format!("`{}` is neither a scene (.ron) nor a particle or mesh file", path.display());
     let ends: Vec<String> = particles::extensions().collect();
-    Err(Diagnostic::error(Code::USAGE, message).hint(format!("particle files end in {}", ends.join(", "))))
+    let hint = format!("particle files end in {}; mesh files in .gltf, .glb, .obj", ends.join(", "));
+    Err(Diagnostic::error(Code::USAGE, message).hint(hint))
 }
 
 /// The scene that the program carries.

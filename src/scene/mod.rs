@@ -12,6 +12,7 @@ pub mod image;
 pub mod meshes;
 mod model;
 pub mod particles;
+pub mod placement;
 mod pointer;
 mod read;
 pub mod sequence;

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use glam::DMat4;
 
 use super::camera::{Camera, Light};
+use super::particles::Taken;
 use super::pointer::PointerPath;
 use super::sequence::Sequence;
 use crate::diagnostic::{FileId, Span};
@@ -57,6 +58,8 @@ pub struct ParticleSource {
     pub file: Sp<String>,
     /// Metres; absent: the file's, else estimated.
     pub radius_m: Option<Sp<f64>>,
+    /// Where its numbers stand, and what its attributes are called.
+    pub taken: Taken,
     /// The file's name has a place for a number: one file for each frame.
     pub sequence: Option<Sequence>,
     /// Lowest and highest corner in metres, in place of those of the positions.

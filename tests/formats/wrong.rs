@@ -1,6 +1,8 @@
 //! What is said about files that are wrong.
 
-use meniscus::scene::particles::ReadError;
+use std::path::Path;
+
+use meniscus::scene::particles::{ReadError, Taken, read_as};
 
 use super::writers::{self, Legacy, Mode, Order, Packing, Sample, Store, Xml};
 
@@ -338,4 +340,18 @@ fn a_cut_text_never_passes_for_a_whole_one() {
             error(name, &bytes[..end]);
         }
     }
+}
+
+#[test]
+fn attributes_that_a_scene_renames_must_be_there() {
+    let as_named = |file: &[u8], old: &str| {
+        let taken = Taken { names: vec![("velocity".to_owned(), old.to_owned())], ..Taken::default() };
+        read_as(Path::new("a.csv"), file, &taken).unwrap_err()
+    };
+    let error = as_named(b"x,y,z,vel_x,vel_y,vel_z\n1,2,3,4,5,6\n", "vell");
+    assert_eq!(error.to_string(), "there is no attribute `vell`");
+    assert_eq!(error.hint.unwrap(), "did you mean `vel`?");
+    let error = as_named(b"x,y,z,mass,id\n1,2,3,4,5\n", "speed");
+    assert_eq!(error.hint.unwrap(), "there are mass, id");
+    assert_eq!(as_named(b"x,y,z\n1,2,3\n", "v").hint.unwrap(), "the file has positions only");
 }

@@ -12,6 +12,7 @@ use crate::host::inputs::{Frames, ImageFiles, ParticleFile};
 use crate::host::models::{MeshFiles, Reading};
 use crate::host::source;
 use crate::program::missing_file;
+use crate::scene::particles::Taken;
 use crate::scene::sequence::Sequence;
 use crate::scene::{self, Item, Scene};
 use crate::syntax::Sp;
@@ -41,7 +42,8 @@ impl Loader<'_> {
                 Some(sequence) => self.frame(&name.value, sequence, Some(&scene.path), Some(name.span)),
             };
             let said = self.job.radius_m.or(item.value.radius_m.as_ref().map(|r| r.value));
-            let file = self.particle_file(Some(item.name.value.clone()), path, bytes, said, Some(name.span));
+            let asked = (said, item.value.taken.clone());
+            let file = self.particle_file(Some(item.name.value.clone()), path, bytes, asked, Some(name.span));
             list.push(ParticleFile { bounds: item.value.bounds, sequence, ..file });
         }
         let source = given.then(|| (None, self.job.source.clone()));
@@ -54,7 +56,8 @@ impl Loader<'_> {
                     (path, bytes, None)
                 }
             };
-            let file = self.particle_file(name, path, bytes, self.job.radius_m, None);
+            let taken = Taken { placement: self.job.placement(), ..Taken::default() };
+            let file = self.particle_file(name, path, bytes, (self.job.radius_m, taken), None);
             list.push(ParticleFile { sequence, ..file });
         }
         list
@@ -91,12 +94,12 @@ impl Loader<'_> {
         name: Option<String>,
         path: PathBuf,
         bytes: Option<Arc<[u8]>>,
-        radius_m: Option<f64>,
+        (radius_m, taken): (Option<f64>, Taken),
         at: Option<Span>,
     ) -> ParticleFile {
-        let kind = AssetKind::Particles { estimate: radius_m.is_none() };
+        let kind = AssetKind::Particles { taken: taken.clone(), estimate: radius_m.is_none() };
         let pending = bytes.map(|bytes| self.cache.begin(&path, bytes, kind, at));
-        ParticleFile { name, path, pending, radius_m, bounds: None, sequence: None }
+        ParticleFile { name, path, pending, radius_m, taken, bounds: None, sequence: None }
     }
 
     /// The pictures of each name: one, or the six faces of a cube.

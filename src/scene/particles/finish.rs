@@ -6,7 +6,7 @@ use std::collections::HashSet;
 use super::error::{ReadError, counted};
 use super::parallel;
 use super::values::Values;
-use super::{Attribute, ParticleSet};
+use super::{Attribute, ParticleSet, Taken};
 
 /// What a reader found in a file.
 #[derive(Debug)]
@@ -25,14 +25,17 @@ impl Found {
     }
 }
 
-/// The set that a reader's findings make.
-pub(super) fn finish(found: Found) -> Result<ParticleSet, ReadError> {
+/// The set that a reader's findings make, taken in a scene's way.
+pub(super) fn finish(mut found: Found, taken: &Taken) -> Result<ParticleSet, ReadError> {
+    taken.rename(&mut found)?;
     let Found { position, attributes, globals, mut notes } = found;
     let position = float_position(position, &mut notes);
     let rows = position.len() / 3;
     let mut attributes = fitting(attributes, rows, &mut notes);
     attributes.insert(0, Attribute { name: "position".to_owned(), components: 3, values: position });
     let radius = radius_of(&globals, &attributes, &mut notes);
+    let radius = radius.map(|radius| (f64::from(radius) * taken.placement.scale) as f32).filter(|r| r.is_normal());
+    taken.place(&mut attributes);
 
     let dropped = drop_rows(&mut attributes, rows);
     if dropped > 0 {

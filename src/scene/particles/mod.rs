@@ -23,6 +23,7 @@ mod ptc;
 mod radius;
 mod stream;
 mod table;
+mod taken;
 mod values;
 mod xml_vtk;
 mod xyz;
@@ -33,6 +34,7 @@ use std::path::Path;
 pub use error::{Place, ReadError};
 pub(super) use polygons::Polygons;
 pub use radius::estimate_radius;
+pub use taken::Taken;
 pub use values::{Kind, Values};
 
 /// One attribute of all particles.
@@ -142,6 +144,14 @@ pub fn known_extension(path: &Path) -> bool {
 /// # Errors
 /// If the extension is unknown, or the bytes are not what they claim to be.
 pub fn read(path: &Path, bytes: &[u8]) -> Result<ParticleSet, ReadError> {
+    read_as(path, bytes, &Taken::default())
+}
+
+/// As [`read`], with attributes renamed and everything put where a scene has it.
+///
+/// # Errors
+/// As [`read`], and if an attribute that gets another name is not there.
+pub fn read_as(path: &Path, bytes: &[u8], taken: &Taken) -> Result<ParticleSet, ReadError> {
     let Some(reader) = reader_for(path) else {
         let known: Vec<String> = extensions().collect();
         let message = match path.extension() {
@@ -153,7 +163,7 @@ pub fn read(path: &Path, bytes: &[u8]) -> Result<ParticleSet, ReadError> {
     if bytes.is_empty() {
         return Err(ReadError::new("the file is empty").at(Place::Byte(0)));
     }
-    finish::finish(reader(bytes)?)
+    finish::finish(reader(bytes)?, taken)
 }
 
 /// Reads a file that may hold a surface, of the formats that have such: legacy VTK and PLY.

@@ -9,7 +9,14 @@ use crate::syntax::{Fields, Node, Sp};
 
 const PLACE: &[&str] = &["position", "rotation", "scale"];
 const BODY: &[&str] =
-    &["file", "position", "rotation", "scale", "tags", "values", "animation", "loop", "start", "instances"];
+    &["file", "up", "position", "rotation", "scale", "tags", "values", "animation", "loop", "start", "instances"];
+
+/// Where a scene puts something.
+pub(super) struct Place {
+    pub position: DVec3,
+    pub rotation: DQuat,
+    pub scale: DVec3,
+}
 
 impl Reader<'_> {
     /// A list of bodies, or one.
@@ -30,6 +37,7 @@ impl Reader<'_> {
         let fields = self.decoder.fields(node, "a body", BODY)?;
         let file = fields.require(&mut self.decoder, "file").and_then(|n| self.file_name(n, "`file`"));
         let own = self.placement(&fields);
+        let up = self.up(&fields);
         let tags = fields.get("tags").map_or(Some(Vec::new()), |n| self.tags(n));
         let values = self.body_values(&fields);
         let playing = self.playing(&fields);
@@ -37,10 +45,10 @@ impl Reader<'_> {
             Some(node) => self.instances(node),
             None => Some(vec![DMat4::IDENTITY]),
         };
-        let own = own?;
+        let (own, up) = (own?, DMat4::from_mat3(up?.scene_from_file()));
         Some(MeshEntry {
             file: file?,
-            world_from_body: instances?.into_iter().map(|instance| own * instance).collect(),
+            world_from_body: instances?.into_iter().map(|instance| own * instance * up).collect(),
             tags: tags?,
             values: values?,
             playing: playing?,
@@ -59,8 +67,17 @@ impl Reader<'_> {
         read.into_iter().collect()
     }
 
-    /// Position in metres; rotation in degrees about x, then y, then z; scale one number or three.
     fn placement(&mut self, fields: &Fields<'_>) -> Option<DMat4> {
+        let Place { position, rotation, scale } = self.place(fields)?;
+        if scale.to_array().contains(&0.0) {
+            let at = fields.get("scale").map_or(fields.head, |node| node.span);
+            self.sound(Some("a scale of 0 leaves nothing of a body"), at)?;
+        }
+        Some(DMat4::from_scale_rotation_translation(scale, rotation, position))
+    }
+
+    /// Position in metres; rotation in degrees about x, then y, then z; scale one number or three.
+    pub(super) fn place(&mut self, fields: &Fields<'_>) -> Option<Place> {
         let mut vector = |name: &str, default: DVec3| match fields.get(name) {
             Some(node) => self.decoder.floats::<3>(node, &format!("`{name}`")).map(DVec3::from_array),
             None => Some(default),
@@ -73,13 +90,9 @@ impl Reader<'_> {
             _ => vector("scale", DVec3::ONE),
         };
         let (position, degrees, scale) = (position?, degrees?, scale?);
-        if scale.to_array().contains(&0.0) {
-            let at = fields.get("scale").map_or(fields.head, |node| node.span);
-            self.sound(Some("a scale of 0 leaves nothing of a body"), at)?;
-        }
         let turn = degrees.to_array().map(f64::to_radians);
         let rotation = DQuat::from_euler(EulerRot::ZYX, turn[2], turn[1], turn[0]);
-        Some(DMat4::from_scale_rotation_translation(scale, rotation, position))
+        Some(Place { position, rotation, scale })
     }
 
     fn tags(&mut self, node: &Node) -> Option<Vec<String>> {

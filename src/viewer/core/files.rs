@@ -9,6 +9,7 @@ use crate::graph::model::{Input as Declared, InputKind};
 use crate::graph::value::Value;
 use crate::host::{Input, Job};
 use crate::output::Output;
+use crate::scene::placement::Up;
 use crate::scene::{self, edit};
 use crate::viewer::dropped::{Kind, kind_of};
 use crate::viewer::params::PRESENT;
@@ -143,7 +144,7 @@ impl Core {
             return Err(format!("`{}` is there already: open that scene, or move it away", short(&path)));
         }
         write(&path, &edit(&self.new_scene(&job)?)?)?;
-        self.reopen(Job { source: path.clone(), graph: None, radius_m: None, ..job });
+        self.reopen(Job { source: path.clone(), graph: None, radius_m: None, up: None, scale: None, ..job });
         Ok(path)
     }
 
@@ -155,13 +156,20 @@ impl Core {
         let text = text.find("Scene(").map_or(text, |at| &text[at..]);
         let text = edit::set_field(text, "about", &format!("{:?}", format!("Particles of {}", short(&job.source))))?;
         let inputs = self.session.content().map(|content| &content.inputs);
+        let is_mesh = matches!(kind_of(&job.source), Ok(Kind::Mesh));
         let name = inputs.into_iter().flatten().find_map(|(name, input)| match input {
-            Input::Particles(_) => Some(name.as_str()),
+            Input::Particles(_) if !is_mesh => Some(name.as_str()),
+            Input::Meshes(_) if is_mesh => Some(name.as_str()),
             _ => None,
         });
         let file = format!("{:?}", short(&job.source));
-        let source = job.radius_m.map(|r| format!("(file: {file}, radius: {r:?})")).unwrap_or(file);
-        let mut text = edit::set_entry(&text, "particles", name.unwrap_or("particles"), &source)?;
+        let radius = job.radius_m.map(|r| format!(", radius: {r:?}")).unwrap_or_default();
+        let up = job.up.filter(|up| *up == Up::Z).map(|_| ", up: Z").unwrap_or_default();
+        let scale = job.scale.map(|s| format!(", scale: {s:?}")).unwrap_or_default();
+        let more = [radius, up.to_owned(), scale].concat();
+        let source = if more.is_empty() { file } else { format!("(file: {file}{more})") };
+        let kind = if is_mesh { "meshes" } else { "particles" };
+        let mut text = edit::set_entry(&text, kind, name.unwrap_or(kind), &source)?;
         if let Some(graph) = &job.graph {
             text = edit::set_field(&text, "graph", &format!("{graph:?}"))?;
         }
