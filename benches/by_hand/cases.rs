@@ -70,7 +70,7 @@ pub fn shipped(graph: &str, viewport: [u32; 2]) -> Case {
     let positions = ball.chain([far]).flatten().flat_map(f32::to_le_bytes).collect();
     Case {
         name: format!("{graph} at {} x {}", viewport[0], viewport[1]),
-        frames: if viewport[0] > 200 { 16 } else { 120 },
+        frames: if viewport[0] > 200 { 48 } else { 120 },
         positions,
         program: load(&DiskFiles, path.to_str().unwrap()),
         viewport,

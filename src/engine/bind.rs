@@ -6,39 +6,38 @@ use wgpu_types::{TextureAspect, TextureFormat};
 
 use super::clear::{self, ClearVariant};
 use super::convert;
+use super::draws::DrawVariant;
 use super::gpu::Gpu;
 use super::materials::Materials;
-use super::meshes::{ByFaces, MeshVariant};
+use super::meshes::ByFaces;
 use super::mips::{self, MipStep};
-use super::pipeline::Pipeline;
+use super::pipeline::{Pipeline, PipelineKind};
 use super::pool::Pool;
 use super::uniform::Uniforms;
 use crate::format::SampleKind;
 use crate::plan::model::{
-    Argument, ArgumentKind, Binding, Bound, Draw, Geometry, ObjectId, ObjectKind, ObjectRef, Pass, PassKind, Plan, View,
+    Argument, ArgumentKind, Binding, Bound, Dispatch, ObjectId, ObjectKind, ObjectRef, Pass, PassKind, Plan, View,
 };
 use crate::shader::reflect::TextureDimension;
 
-/// A pass made ready, for one rotation of its rings.
+/// A pass made ready, for one rotation of its rings. What is looked at in every frame lies here
+/// together: between two frames the processor's caches belong to others.
 #[derive(Debug)]
 pub(super) enum Variant {
-    Compute(Option<wgpu::BindGroup>),
+    /// A pass's, or one that settles a counted buffer.
+    Dispatch(DispatchVariant),
     Draw(DrawVariant),
     Clear(ClearVariant),
     Mips(Vec<MipStep>),
-    Settle(wgpu::BindGroup),
     /// Copies name what they touch as they go.
     Nothing,
 }
 
 #[derive(Debug)]
-pub(super) struct DrawVariant {
+pub(super) struct DispatchVariant {
+    pub pipeline: wgpu::ComputePipeline,
     pub group: Option<wgpu::BindGroup>,
-    /// Each target and what it resolves into.
-    pub color: Vec<(wgpu::TextureView, Option<wgpu::TextureView>)>,
-    pub depth: Option<wgpu::TextureView>,
-    pub indices: Option<wgpu::Buffer>,
-    pub meshes: Option<MeshVariant>,
+    pub dispatch: Dispatch,
 }
 
 /// What does not change between variants.
@@ -154,39 +153,19 @@ impl Bench<'_> {
     pub fn variant(&self, index: usize, pipeline: Option<&Pipeline>) -> Result<Variant, String> {
         let pass = &self.plan.passes[index];
         match &pass.kind {
-            PassKind::Compute { shader, .. } => {
-                Ok(Variant::Compute(self.group(pass, pipeline, &shader.bindings, 0)?))
+            PassKind::Compute { shader, dispatch } => {
+                let group = self.group(pass, pipeline, &shader.bindings, 0)?;
+                dispatched(pipeline, group, dispatch.clone())
             }
             PassKind::Draw(draw) => Ok(Variant::Draw(self.draw(index, pass, pipeline, draw)?)),
             PassKind::Clear { view, value } => clear::variant(self, pass, pipeline, view, *value).map(Variant::Clear),
             PassKind::Mips { texture } => mips::variant(self, pass, pipeline, *texture).map(Variant::Mips),
             PassKind::Settle { counted, arguments } => {
-                self.settle(index, pipeline, *counted, arguments).map(Variant::Settle)
+                let group = self.settle(index, pipeline, *counted, arguments)?;
+                dispatched(pipeline, Some(group), Dispatch::Groups([1; 3]))
             }
             PassKind::Copy { .. } | PassKind::Arguments { .. } => Ok(Variant::Nothing),
         }
-    }
-
-    fn draw(&self, index: usize, pass: &Pass, pipeline: Option<&Pipeline>, draw: &Draw) -> Result<DrawVariant, String> {
-        let color = draw.color.iter().map(|target| {
-            let resolve = target.resolve.as_ref().map(|v| self.attachment(v)).transpose()?;
-            Ok((self.attachment(&target.view)?, resolve))
-        });
-        let indices = match draw.geometry {
-            Geometry::Indexed { indices, .. } | Geometry::Indirect { indices: Some(indices), .. } => {
-                Some(self.buffer(indices)?.clone())
-            }
-            _ => None,
-        };
-        let meshes = self.meshes(index, pass, draw, pipeline)?;
-        let group = if meshes.is_some() { None } else { self.group(pass, pipeline, &draw.shader.bindings, 0)? };
-        Ok(DrawVariant {
-            group,
-            color: color.collect::<Result<_, String>>()?,
-            depth: draw.depth.as_ref().map(|d| self.attachment(&d.view)).transpose()?,
-            indices,
-            meshes,
-        })
     }
 
     pub fn texture(&self, object: ObjectRef) -> Result<&wgpu::Texture, String> {
@@ -339,6 +318,19 @@ impl Bench<'_> {
         let entries: Vec<_> =
             (0..).zip(resources).map(|(binding, r)| wgpu::BindGroupEntry { binding, resource: r }).collect();
         Ok(self.make_group(path, layout, &entries))
+    }
+}
+
+fn dispatched(
+    pipeline: Option<&Pipeline>,
+    group: Option<wgpu::BindGroup>,
+    dispatch: Dispatch,
+) -> Result<Variant, String> {
+    match pipeline.map(|p| &p.kind) {
+        Some(PipelineKind::Compute(pipeline)) => {
+            Ok(Variant::Dispatch(DispatchVariant { pipeline: pipeline.clone(), group, dispatch }))
+        }
+        _ => Err("it has no compute pipeline".into()),
     }
 }
 

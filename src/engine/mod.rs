@@ -14,6 +14,7 @@ mod claims;
 mod clear;
 mod compile;
 mod convert;
+mod draws;
 mod encode;
 mod errors;
 mod gpu;

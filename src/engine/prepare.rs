@@ -47,6 +47,10 @@ pub struct Runner {
     pub(super) materials: Materials,
     pub(super) variants: Vec<Variants>,
     pub(super) rings_of: Vec<Vec<usize>>,
+    /// For each pass whether it is inside `Steps`, and its unit: what each frame asks of all.
+    pub(super) parts: Vec<(bool, usize)>,
+    /// The passes that settle counted buffers.
+    pub(super) settles: Vec<usize>,
     /// For each pass the first one of the render pass that it may share.
     pub(super) leaders: Vec<usize>,
     pub(super) uniforms: Uniforms,
@@ -76,7 +80,6 @@ pub struct Runner {
     pub(super) before: (Vec<usize>, Vec<u64>),
     /// Whether passes run whose results are there already.
     pub(super) runs_all: bool,
-    pub(super) loads_are_free: bool,
     pub(super) last: Option<Report>,
     /// Statistics on their way back.
     pub(super) asked: Option<Asked>,
@@ -123,7 +126,6 @@ impl Engine {
         let (pipelines, by_faces, compiled) = self.compiler.pipelines(&plan)?;
         let state_kept = state_kept(&plan, previous);
         let pool = Pool::new(&self.gpu, &plan, previous.map(|p| &p.pool), &state_kept)?;
-        let uniforms = Uniforms::new(&self.gpu, &plan)?;
         let fixed = errors::scoped(&self.gpu, || Fixed::new(&self.gpu, &plan))
             .map_err(|e| Diagnostic::error(Code::DEVICE, format!("the device refused the engine's buffers: {e}")))?;
         let kept_inputs = (0..plan.objects.len()).map(|id| is_input(&plan, id) && pool.memory(id).is_some()).collect();
@@ -132,6 +134,7 @@ impl Engine {
         let (rotation, done) = progress(&plan, previous, &state_kept);
         let materials = Materials::new(&self.gpu, &plan, previous.map(|p| &p.materials));
         let Carried { changes, sources, stamps } = carry::carry(&plan, &pool, previous);
+        let uniforms = Uniforms::new(&self.gpu, &plan, &changes)?;
         if let Some(before) = previous {
             carry::copy_answers(&self.gpu, &plan, &fixed, before);
         }
@@ -148,7 +151,9 @@ impl Engine {
             pipelines,
             by_faces,
             materials,
-            variants: plan.passes.iter().map(|_| Variants::new()).collect(),
+            variants: plan.passes.iter().map(|_| Variants::default()).collect(),
+            parts: plan.passes.iter().map(|pass| (pass.steps.is_some(), pass.unit)).collect(),
+            settles: settles(&plan),
             rings_of: plan.passes.iter().map(rings_of).collect(),
             timing: Timing::new(&self.gpu, &plan),
             claimant: previous.map_or_else(|| Claimant::new(&self.claims), |p| p.claimant.clone()),
@@ -156,7 +161,6 @@ impl Engine {
             rotation,
             done,
             inputs_filled: false,
-            loads_are_free: self.gpu.info().device_type == wgpu::DeviceType::Cpu,
             last: previous.and_then(|p| carry::last_report(&plan, p)),
             asked: None,
             build: BuildReport {
@@ -266,6 +270,11 @@ fn check_features(gpu: &Gpu, plan: &Plan) -> Result<(), Diagnostic> {
         format!("`{}` needs {}, which this device lacks", plan.graph.display(), names.join(", ")),
     )
     .hint("`If(test: \"device(feature)\")` can choose another way for such devices"))
+}
+
+fn settles(plan: &Plan) -> Vec<usize> {
+    let is_one = |index: &usize| matches!(plan.passes[*index].kind, PassKind::Settle { .. });
+    (0..plan.passes.len()).filter(is_one).collect()
 }
 
 fn steps_in_order(plan: &Plan) -> Vec<usize> {

@@ -12,7 +12,7 @@ use super::prepare::{Engine, Runner};
 use super::report::Report;
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::graph::value::Value;
-use crate::plan::model::{ObjectRef, Origin, PassKind, Plan, Policy};
+use crate::plan::model::{ObjectRef, Origin, Plan, Policy};
 
 /// What changes from frame to frame.
 #[derive(Clone, Copy)]
@@ -163,9 +163,9 @@ impl Runner {
     fn choose(&mut self, only: Option<&[bool]>) -> Vec<bool> {
         let mut chosen = std::mem::take(&mut self.chosen);
         chosen.clear();
-        chosen.extend(self.plan.passes.iter().enumerate().map(|(index, pass)| {
+        chosen.extend(self.parts.iter().enumerate().map(|(index, (in_steps, unit))| {
             let is_left_out = only.is_some_and(|only| only.get(index) == Some(&false));
-            !is_left_out && (pass.steps.is_some() || self.changes.runs(pass.unit))
+            !is_left_out && (*in_steps || self.changes.runs(*unit))
         }));
         chosen
     }
@@ -308,10 +308,9 @@ impl Runner {
 
     /// Clears the counts of the settling passes that run. Others keep what they counted.
     fn clear_counts(&self, encoder: &mut wgpu::CommandEncoder, chosen: Option<&[bool]>) {
-        let settles = self.plan.passes.iter().enumerate().filter(|(_, p)| matches!(p.kind, PassKind::Settle { .. }));
         let mut run = 0..0;
-        for (stat, (index, _)) in (0..).zip(settles) {
-            if chosen.is_some_and(|chosen| chosen.get(index) == Some(&false)) {
+        for (stat, index) in (0..).zip(&self.settles) {
+            if chosen.is_some_and(|chosen| chosen.get(*index) == Some(&false)) {
                 continue;
             }
             if run.end != stat {
@@ -326,7 +325,7 @@ impl Runner {
     /// Makes what the pass needs for the current rotation, if it is not there.
     pub(super) fn ensure_variant(&mut self, gpu: &Gpu, index: usize) -> Result<usize, Diagnostic> {
         let key = self.rotation_key(index);
-        if self.variants[index].contains_key(&key) {
+        if self.variants[index].get(key).is_some() {
             return Ok(key);
         }
         let bench = Bench {
@@ -377,8 +376,34 @@ impl Runner {
     }
 }
 
-/// By key of [`Runner::rotation_key`].
-pub(super) type Variants = BTreeMap<usize, Variant>;
+/// A pass's, by key of [`Runner::rotation_key`]: most have one, which lies here.
+#[derive(Debug, Default)]
+pub(super) struct Variants {
+    first: Option<(usize, Variant)>,
+    others: BTreeMap<usize, Variant>,
+}
+
+impl Variants {
+    pub fn get(&self, key: usize) -> Option<&Variant> {
+        match &self.first {
+            Some((known, variant)) if *known == key => Some(variant),
+            Some(_) => self.others.get(&key),
+            None => None,
+        }
+    }
+
+    fn insert(&mut self, key: usize, variant: Variant) {
+        match &mut self.first {
+            Some((known, _)) if *known != key => _ = self.others.insert(key, variant),
+            first => *first = Some((key, variant)),
+        }
+    }
+
+    pub fn clear(&mut self) {
+        self.first = None;
+        self.others.clear();
+    }
+}
 
 fn clear_words(encoder: &mut wgpu::CommandEncoder, buffer: &wgpu::Buffer, words: &Range<u64>) {
     if !words.is_empty() {

@@ -17,6 +17,7 @@ use crate::graph::value::Value;
 use crate::plan::changes::Changes;
 use crate::plan::model::{Bound, Pass, PassKind, Plan, ShaderUse, UniformMember, UniformValue};
 use crate::plan::packing;
+use crate::shader::reflect::Type;
 
 /// What gives live names (`time`, `camera.position`) their values.
 pub(super) type Live<'a> = &'a dyn Fn(&str, Option<&StepInfo>) -> Option<Value>;
@@ -32,9 +33,23 @@ struct Place {
     pass: usize,
 }
 
+/// A member whose value frames give: all that it takes to pack it lies here, for there are many.
+#[derive(Debug)]
+struct Member {
+    /// Which of the values that were told; absent where it is put together from several.
+    told: Option<usize>,
+    ty: Type,
+    bytes: Range<usize>,
+    /// Of `places`, and of the members of its block.
+    place: usize,
+    member: usize,
+}
+
 #[derive(Debug)]
 pub(super) struct Uniforms {
     places: Vec<Place>,
+    /// Members of the live places outside of `Steps`, in the order of their bytes.
+    members: Vec<Member>,
     /// Where the live places of outside and of each `Steps` lie: contiguous.
     outside: Range<u64>,
     regions: Vec<Range<u64>>,
@@ -51,7 +66,7 @@ pub(super) struct Uniforms {
 impl Uniforms {
     /// # Errors
     /// For each known value that does not fit its member.
-    pub fn new(gpu: &Gpu, plan: &Plan) -> Result<Self, Diagnostics> {
+    pub fn new(gpu: &Gpu, plan: &Plan, known: &Changes) -> Result<Self, Diagnostics> {
         let alignment = u64::from(gpu.limits().min_uniform_buffer_offset_alignment);
         let mut places = wanted(plan);
         // Live ones of one context lie together; those that never change come first.
@@ -80,8 +95,19 @@ impl Uniforms {
         });
         let bytes = vec![0; offset as usize];
         let (sent, staged) = (Vec::new(), Vec::new());
-        let mut uniforms =
-            Self { places, outside, regions, bytes, sent, is_stale: true, buffer, staging: None, staged };
+        let mut uniforms = Self {
+            places,
+            members: Vec::new(),
+            outside,
+            regions,
+            bytes,
+            sent,
+            is_stale: true,
+            buffer,
+            staging: None,
+            staged,
+        };
+        uniforms.members = uniforms.live_members(plan, known);
         uniforms.pack_known(plan)?;
         uniforms.sent.clone_from(&uniforms.bytes);
         if let Some(buffer) = &uniforms.buffer {
@@ -128,7 +154,7 @@ impl Uniforms {
         if !self.is_stale && !known.is_blind() {
             return Ok(());
         }
-        self.pack_live(plan, None, &|name| known.live_value(name), &|name| live(name, None))?;
+        self.pack_outside(plan, known, live)?;
         self.is_stale = false;
         let region = span(&self.outside);
         if let Some(buffer) = &self.buffer
@@ -154,7 +180,7 @@ impl Uniforms {
     ) -> Result<(), Diagnostics> {
         self.staged.clear();
         for info in steps {
-            self.pack_live(plan, Some(info.steps), &|_| None, &|name| live(name, Some(info)))?;
+            self.pack_step(plan, info.steps, &|name| live(name, Some(info)))?;
             self.staged.extend_from_slice(&self.bytes[span(&self.regions[info.steps])]);
         }
         if self.staged.is_empty() {
@@ -187,37 +213,90 @@ impl Uniforms {
         }
     }
 
-    fn pack_live<'v>(
-        &mut self,
-        plan: &Plan,
-        steps: Option<usize>,
-        known: &dyn Fn(&str) -> Option<&'v Value>,
-        live: &dyn Fn(&str) -> Option<Value>,
-    ) -> Result<(), Diagnostics> {
-        let either = |name: &str| known(name).cloned().or_else(|| live(name));
-        let mut found = Diagnostics::new();
-        for place in self.places.iter().filter(|p| p.live && p.steps == steps) {
-            for member in &plan.uniforms[place.block].members {
-                let UniformValue::Live(expr) = &member.value else { continue };
+    fn live_members(&self, plan: &Plan, known: &Changes) -> Vec<Member> {
+        let live = self.places.iter().enumerate().filter(|(_, p)| p.live && p.steps.is_none());
+        let members = live.flat_map(|(place, p)| {
+            let block = &plan.uniforms[p.block];
+            let member = move |(member, about): (usize, &UniformMember)| {
+                let UniformValue::Live(expr) = &about.value else { return None };
                 let told = match &expr.kind {
-                    ExprKind::Name(name) => known(name),
+                    ExprKind::Name(name) => known.live_place(name),
                     _ => None,
                 };
-                let packed = match told.map(Cow::Borrowed).or_else(|| eval_live(expr, &either).map(Cow::Owned)) {
-                    Some(value) => pack(&mut self.bytes, place, plan, member, &value),
-                    None => Err(Diagnostic::error(
-                        Code::MISSING_INPUT,
-                        format!("nothing gives `{}` of `{}` a value", member.name, plan.passes[place.pass].path),
-                    )
-                    .at(expr.span, "asked for here")),
-                };
-                if let Err(diagnostic) = packed {
-                    found.push(diagnostic);
+                let start = p.offset as usize + about.offset as usize;
+                let bytes = start..p.offset as usize + block.size.max(16) as usize;
+                Some(Member { told, ty: about.ty.clone(), bytes, place, member })
+            };
+            block.members.iter().enumerate().filter_map(member)
+        });
+        members.collect()
+    }
+
+    /// Packs the live places outside of steps.
+    fn pack_outside(&mut self, plan: &Plan, known: &Changes, live: Live<'_>) -> Result<(), Diagnostics> {
+        let either = |name: &str| known.live_value(name).cloned().or_else(|| live(name, None));
+        let mut found = Diagnostics::new();
+        for member in &self.members {
+            let place = &self.places[member.place];
+            let about = || &plan.uniforms[place.block].members[member.member];
+            let value = match member.told.and_then(|told| known.live_value_at(told)) {
+                Some(value) => Some(Cow::Borrowed(value)),
+                None => live_value(about(), &either).map(Cow::Owned),
+            };
+            let out = self.bytes.get_mut(member.bytes.clone()).unwrap_or_default();
+            let packed = match value {
+                Some(value) => packing::encode(&value, &member.ty, out).map_err(|e| misfit(plan, place, about(), &e)),
+                None => Err(nothing_gives(plan, place, about())),
+            };
+            found.0.extend(packed.err());
+        }
+        if found.is_empty() { Ok(()) } else { Err(found) }
+    }
+
+    /// Packs the places of a `Steps` for one of its steps.
+    fn pack_step(
+        &mut self,
+        plan: &Plan,
+        steps: usize,
+        live: &dyn Fn(&str) -> Option<Value>,
+    ) -> Result<(), Diagnostics> {
+        let mut found = Diagnostics::new();
+        for place in self.places.iter().filter(|p| p.live && p.steps == Some(steps)) {
+            for member in &plan.uniforms[place.block].members {
+                if !matches!(member.value, UniformValue::Live(_)) {
+                    continue;
                 }
+                let packed = match live_value(member, live) {
+                    Some(value) => pack(&mut self.bytes, place, plan, member, &value),
+                    None => Err(nothing_gives(plan, place, member)),
+                };
+                found.0.extend(packed.err());
             }
         }
         if found.is_empty() { Ok(()) } else { Err(found) }
     }
+}
+
+fn live_value(member: &UniformMember, live: &dyn Fn(&str) -> Option<Value>) -> Option<Value> {
+    match &member.value {
+        UniformValue::Live(expr) => eval_live(expr, live),
+        UniformValue::Known(value) => Some(value.clone()),
+    }
+}
+
+fn nothing_gives(plan: &Plan, place: &Place, member: &UniformMember) -> Diagnostic {
+    let message = format!("nothing gives `{}` of `{}` a value", member.name, plan.passes[place.pass].path);
+    let error = Diagnostic::error(Code::MISSING_INPUT, message);
+    match &member.value {
+        UniformValue::Live(expr) => error.at(expr.span, "asked for here"),
+        UniformValue::Known(_) => error,
+    }
+}
+
+fn misfit(plan: &Plan, place: &Place, member: &UniformMember, message: &str) -> Diagnostic {
+    let pass = &plan.passes[place.pass];
+    Diagnostic::error(Code::UNIFORM_MISMATCH, format!("`{}` of `{}`: {message}", member.name, pass.path))
+        .at(pass.span, "packed for this pass")
 }
 
 fn span(region: &Range<u64>) -> Range<usize> {
@@ -228,11 +307,7 @@ fn pack(bytes: &mut [u8], place: &Place, plan: &Plan, member: &UniformMember, va
     let block = &plan.uniforms[place.block];
     let (start, end) = (place.offset as usize, place.offset as usize + block.size.max(16) as usize);
     let out = bytes.get_mut(start + member.offset as usize..end).unwrap_or_default();
-    packing::encode(value, &member.ty, out).map_err(|message| {
-        let pass = &plan.passes[place.pass];
-        Diagnostic::error(Code::UNIFORM_MISMATCH, format!("`{}` of `{}`: {message}", member.name, pass.path))
-            .at(pass.span, "packed for this pass")
-    })
+    packing::encode(value, &member.ty, out).map_err(|message| misfit(plan, place, member, &message))
 }
 
 /// Each block with each context that uses it; blocks without live members once.

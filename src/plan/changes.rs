@@ -150,13 +150,22 @@ impl Changes {
 
     /// The value that was told last of a name.
     pub fn live_value(&self, name: &str) -> Option<&Value> {
+        self.live_value_at(self.live_place(name)?)
+    }
+
+    /// The same by its place among those that frames give.
+    pub fn live_value_at(&self, at: usize) -> Option<&Value> {
+        self.live.get(at)?.1.as_ref()
+    }
+
+    /// The place of a name among those whose values frames give.
+    pub fn live_place(&self, name: &str) -> Option<usize> {
         // Causes of a kind are in the order of their names.
         let place = |(n, _): &(usize, Option<Value>)| match &self.causes[*n] {
             Cause::Live(live) => live.as_str().cmp(name),
             _ => std::cmp::Ordering::Less,
         };
-        let at = self.live.binary_search_by(place).ok()?;
-        self.live[at].1.as_ref()
+        self.live.binary_search_by(place).ok()
     }
 
     /// Tells that an input has another content than before.
@@ -272,8 +281,8 @@ impl Changes {
             if !self.now.runs[unit] && !node.only_steps {
                 continue;
             }
-            let is_left_out = |pass: &usize| only.is_some_and(|only| only.get(*pass) == Some(&false));
-            if plan.units[unit].passes.iter().any(is_left_out) {
+            let is_left_out = |only: &[bool]| plan.units[unit].passes.iter().any(|p| only.get(*p) == Some(&false));
+            if only.is_some_and(is_left_out) {
                 if self.now.runs[unit] {
                     self.pending.marks[unit].add(&Reason::Unfinished);
                 }

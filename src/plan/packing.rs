@@ -1,7 +1,9 @@
 //! Values as bytes of WGSL types, for uniforms and tables. No GPU here.
 
+use std::ops::Range;
+
 use crate::graph::rows::Row;
-use crate::graph::value::{Value, Vector};
+use crate::graph::value::{Number, Value, Vector};
 use crate::shader::reflect::{Scalar, Type};
 
 /// Writes a value as a type has it in memory, at the start of `out`.
@@ -17,14 +19,12 @@ pub fn encode(value: &Value, ty: &Type, out: &mut [u8]) -> Result<(), String> {
         return Err(format!("{} needs {} bytes, there are {}", ty.wgsl(), ty.size(), out.len()));
     }
     let mismatch = || format!("expected a value for {}, found {} {value}", ty.wgsl(), value.kind());
+    let all = 0..value.component_count();
     match ty {
-        Type::Scalar(scalar) | Type::Atomic(scalar) => scalar_bytes(value, *scalar, out).ok_or_else(mismatch),
-        Type::Vector { components, scalar } => {
-            vector(value.components(), *components, *scalar, out).ok_or_else(mismatch)
-        }
-        Type::Matrix { columns, rows, scalar } => {
-            matrix(value.components(), *columns, *rows, *scalar, out).ok_or_else(mismatch)
-        }
+        Type::Scalar(_) | Type::Atomic(_) if matches!(value, Value::Vector(_)) => Err(mismatch()),
+        Type::Scalar(scalar) | Type::Atomic(scalar) => scalar_bytes(value.number(0), *scalar, out).ok_or_else(mismatch),
+        Type::Vector { components, scalar } => vector(value, all, *components, *scalar, out).ok_or_else(mismatch),
+        Type::Matrix { columns, rows, scalar } => matrix(value, *columns, *rows, *scalar, out).ok_or_else(mismatch),
         Type::Array { element, count: Some(count), stride } => {
             let mut parts = value.components();
             let width = parts.len() / (*count).max(1) as usize;
@@ -65,37 +65,39 @@ pub fn rows(rows: &[Row], item: Option<&Type>, stride: u32) -> Result<Vec<u8>, S
     Ok(bytes)
 }
 
-fn vector(parts: impl ExactSizeIterator<Item = Value>, components: u32, scalar: Scalar, out: &mut [u8]) -> Option<()> {
-    let opaque = (parts.len() == 3 && components == 4).then_some(Value::Int(1));
+/// A range of components as a vector.
+fn vector(value: &Value, parts: Range<usize>, components: u32, scalar: Scalar, out: &mut [u8]) -> Option<()> {
+    let opaque = (parts.len() == 3 && components == 4).then_some(Number::Int(1));
     if opaque.is_none() && parts.len() != components as usize {
         return None;
     }
-    let places = out.chunks_mut(scalar.size() as usize);
-    parts.chain(opaque).zip(places).try_for_each(|(part, place)| scalar_bytes(&part, scalar, place))
+    let mut places = out.chunks_mut(scalar.size() as usize);
+    for index in parts {
+        scalar_bytes(value.number(index), scalar, places.next()?)?;
+    }
+    if opaque.is_some() { scalar_bytes(opaque, scalar, places.next()?) } else { Some(()) }
 }
 
-fn matrix(
-    mut parts: impl ExactSizeIterator<Item = Value>,
-    columns: u32,
-    rows: u32,
-    scalar: Scalar,
-    out: &mut [u8],
-) -> Option<()> {
-    if parts.len() != (columns * rows) as usize {
+fn matrix(value: &Value, columns: u32, rows: u32, scalar: Scalar, out: &mut [u8]) -> Option<()> {
+    if value.component_count() != (columns * rows) as usize {
         return None;
     }
     let stride = scalar.size() as usize * if rows == 2 { 2 } else { 4 };
-    let mut columns = out.chunks_mut(stride).take(columns as usize);
-    columns.try_for_each(|column| vector(parts.by_ref().take(rows as usize), rows, scalar, column))
+    for (column, place) in out.chunks_mut(stride).take(columns as usize).enumerate() {
+        let first = column * rows as usize;
+        vector(value, first..first + rows as usize, rows, scalar, place)?;
+    }
+    Some(())
 }
 
-fn scalar_bytes(value: &Value, scalar: Scalar, out: &mut [u8]) -> Option<()> {
+fn scalar_bytes(number: Option<Number>, scalar: Scalar, out: &mut [u8]) -> Option<()> {
+    let number = number?;
     let bytes: [u8; 4] = match scalar {
-        Scalar::F32 => (number(value)? as f32).to_le_bytes(),
-        Scalar::I32 => i32::try_from(whole(value)?).ok()?.to_le_bytes(),
-        Scalar::U32 => u32::try_from(whole(value)?).ok()?.to_le_bytes(),
+        Scalar::F32 => (real(number) as f32).to_le_bytes(),
+        Scalar::I32 => i32::try_from(whole(number)?).ok()?.to_le_bytes(),
+        Scalar::U32 => u32::try_from(whole(number)?).ok()?.to_le_bytes(),
         Scalar::F16 => {
-            let half = half::f16::from_f64(number(value)?).to_le_bytes();
+            let half = half::f16::from_f64(real(number)).to_le_bytes();
             out.get_mut(..2)?.copy_from_slice(&half);
             return Some(());
         }
@@ -105,17 +107,21 @@ fn scalar_bytes(value: &Value, scalar: Scalar, out: &mut [u8]) -> Option<()> {
     Some(())
 }
 
-fn number(value: &Value) -> Option<f64> {
-    value.as_f64().or_else(|| value.as_bool().map(|b| f64::from(u8::from(b))))
+fn real(number: Number) -> f64 {
+    match number {
+        Number::Int(i) => i as f64,
+        Number::Float(x) => x,
+        Number::Bool(b) => f64::from(u8::from(b)),
+    }
 }
 
-fn whole(value: &Value) -> Option<i64> {
-    match value {
-        Value::Int(i) => Some(*i),
-        Value::Bool(b) => Some(i64::from(*b)),
+fn whole(number: Number) -> Option<i64> {
+    match number {
+        Number::Int(i) => Some(i),
+        Number::Bool(b) => Some(i64::from(b)),
         // Counts and indices that came through a division, when nothing is lost.
-        Value::Float(f) if f.fract() == 0.0 && f.abs() < 9e15 => Some(*f as i64),
-        _ => None,
+        Number::Float(x) if x.fract() == 0.0 && x.abs() < 9e15 => Some(x as i64),
+        Number::Float(_) => None,
     }
 }
 

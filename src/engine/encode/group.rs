@@ -8,7 +8,6 @@ use crate::engine::bind::Variant;
 use crate::engine::errors;
 use crate::engine::gpu::Gpu;
 use crate::engine::prepare::Runner;
-use crate::plan::model::PassKind;
 
 impl Runner {
     /// Encodes those passes of a range that are wanted; `None` wants all.
@@ -41,14 +40,14 @@ impl Runner {
     ) -> Result<(), Diagnostic> {
         let is_wanted = |index: &usize| only.is_none_or(|only| only.get(*index) != Some(&false));
         let mut passes = 0;
+        let mut only_one = None;
         for index in group.clone().filter(is_wanted) {
-            self.ensure_variant(gpu, index)?;
+            let key = self.ensure_variant(gpu, index)?;
             passes += 1;
+            only_one = Some((index, key));
         }
-        if group.len() == 1 || passes == 1 {
-            for index in group.filter(is_wanted) {
-                self.encode_one(recorder, index);
-            }
+        if let Some((index, key)) = only_one.filter(|_| passes == 1) {
+            self.encode_one(recorder, index, key);
         } else if passes > 1 {
             self.encode_draws(recorder, group.filter(is_wanted));
         }
@@ -56,9 +55,8 @@ impl Runner {
         Ok(())
     }
 
-    fn encode_one(&mut self, recorder: &mut Recorder<'_>, index: usize) {
-        let key = self.rotation_key(index);
-        let Some(variant) = self.variants[index].get(&key) else { return };
+    fn encode_one(&mut self, recorder: &mut Recorder<'_>, index: usize, key: usize) {
+        let Some(variant) = self.variants[index].get(key) else { return };
         let is_timed = can_be_timed(variant, self.timing.times_encoders());
         let joins = recorder.is_computing() && super::is_dispatch(variant);
         let pair = self.timing.mark(index, is_timed, joins);
@@ -81,9 +79,9 @@ impl Runner {
 
     fn part(&self, index: usize) -> Option<draw::Part<'_>> {
         let pass = &self.plan.passes[index];
-        let variant = self.variants[index].get(&self.rotation_key(index))?;
-        let (PassKind::Draw(draw), Variant::Draw(variant)) = (&pass.kind, variant) else { return None };
-        Some(draw::Part { pass, draw, pipeline: self.pipelines[index].as_deref(), variant })
+        let variant = self.variants[index].get(self.rotation_key(index))?;
+        let Variant::Draw(variant) = variant else { return None };
+        Some(draw::Part { pass, variant })
     }
 
     fn encoding<'a, 'b>(&'a self, recorder: &'a mut Recorder<'b>, pair: Option<u32>) -> Encoding<'a, 'b> {
@@ -95,12 +93,11 @@ impl Runner {
             rotation: &self.rotation,
             timing: &self.timing,
             pair,
-            loads_are_free: self.loads_are_free,
         }
     }
 
     fn record(&self, recorder: &mut Recorder<'_>, index: usize, key: usize, pair: Option<u32>) {
-        let Some(variant) = self.variants[index].get(&key) else { return };
+        let Some(variant) = self.variants[index].get(key) else { return };
         let pipeline = self.pipelines[index].as_deref();
         self.encoding(recorder, pair).pass(&self.plan.passes[index], pipeline, variant);
     }

@@ -8,7 +8,6 @@ pub(super) mod draw;
 mod group;
 mod mips;
 mod recorder;
-mod settle;
 
 pub(super) use recorder::{Begun, Recorder};
 
@@ -30,25 +29,22 @@ pub(super) struct Encoding<'a, 'b> {
     pub timing: &'a Timing,
     /// The pair of queries that times the pass.
     pub pair: Option<u32>,
-    /// On a processor, keeping what is there costs less than clearing it.
-    pub loads_are_free: bool,
 }
 
 impl Encoding<'_, '_> {
     /// Encodes one pass.
     pub fn pass(&mut self, pass: &Pass, pipeline: Option<&Pipeline>, variant: &Variant) {
+        // Of most passes the variants know all: the plan is not looked at.
+        match variant {
+            Variant::Dispatch(variant) => return compute::encode(self, pass, variant),
+            Variant::Draw(variant) => return draw::encode(self, std::iter::once(draw::Part { pass, variant })),
+            _ => {}
+        }
         match (&pass.kind, variant) {
-            (PassKind::Compute { dispatch, .. }, Variant::Compute(group)) => {
-                compute::encode(self, pass, dispatch, pipeline, group.as_ref());
-            }
-            (PassKind::Draw(draw), Variant::Draw(variant)) => {
-                draw::encode(self, std::iter::once(draw::Part { pass, draw, pipeline, variant }));
-            }
             (PassKind::Clear { view, .. }, Variant::Clear(variant)) => {
                 clear::encode(self, pass, view, pipeline, variant);
             }
             (PassKind::Mips { .. }, Variant::Mips(steps)) => mips::encode(self, pass, pipeline, steps),
-            (PassKind::Settle { .. }, Variant::Settle(group)) => settle::encode(self, pass, pipeline, group),
             (PassKind::Copy { from, to }, _) => copy::encode(self, pass, from, to),
             (PassKind::Arguments { from, offset, indexed, slot }, _) => {
                 arguments::encode(self, pass, *from, *offset, *indexed, *slot);
@@ -108,7 +104,7 @@ pub(super) fn can_be_timed(variant: &Variant, between: bool) -> bool {
         Variant::Nothing | Variant::Clear(ClearVariant::Texels { .. } | ClearVariant::Zero { .. }) => between,
         Variant::Clear(ClearVariant::Color { views, .. } | ClearVariant::Depth { views, .. }) => !views.is_empty(),
         Variant::Mips(steps) => !steps.is_empty(),
-        Variant::Compute(_) | Variant::Draw(_) | Variant::Settle(_) => true,
+        Variant::Dispatch(_) | Variant::Draw(_) => true,
         Variant::Clear(ClearVariant::Words { .. }) => true,
     }
 }
@@ -116,7 +112,7 @@ pub(super) fn can_be_timed(variant: &Variant, between: bool) -> bool {
 /// Whether a pass is nothing but dispatches, which join those before them.
 pub(super) fn is_dispatch(variant: &Variant) -> bool {
     match variant {
-        Variant::Compute(_) | Variant::Settle(_) | Variant::Clear(ClearVariant::Words { .. }) => true,
+        Variant::Dispatch(_) | Variant::Clear(ClearVariant::Words { .. }) => true,
         Variant::Mips(steps) => matches!(steps.first().map(|step| &step.into), Some(MipInto::Groups(_))),
         _ => false,
     }

@@ -4,7 +4,7 @@ mod vector;
 
 use std::fmt;
 
-pub use vector::Vector;
+pub use vector::{Number, Vector};
 
 /// A value of the expression language. Its vectors have 2 to 4 components; matrices and rows of tables have more.
 #[derive(Clone, Debug, PartialEq)]
@@ -61,10 +61,25 @@ impl Value {
         }
     }
 
-    /// Its components; a scalar is its own single component.
+    /// How many components it has; a scalar is its own single component.
+    pub fn component_count(&self) -> usize {
+        if let Value::Vector(v) = self { v.len() } else { 1 }
+    }
+
+    /// A component as a plain number; a word is none.
+    pub fn number(&self, index: usize) -> Option<Number> {
+        match self {
+            Value::Vector(v) => v.number(index),
+            Value::Int(i) if index == 0 => Some(Number::Int(*i)),
+            Value::Float(x) if index == 0 => Some(Number::Float(*x)),
+            Value::Bool(b) if index == 0 => Some(Number::Bool(*b)),
+            _ => None,
+        }
+    }
+
+    /// Its components.
     pub fn components(&self) -> impl ExactSizeIterator<Item = Value> + Clone + '_ {
-        let count = if let Value::Vector(v) = self { v.len() } else { 1 };
-        (0..count).map(move |index| match self {
+        (0..self.component_count()).map(move |index| match self {
             Value::Vector(v) => v.get(index).unwrap_or(Value::Int(0)),
             scalar => scalar.clone(),
         })

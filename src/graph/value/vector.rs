@@ -22,6 +22,14 @@ enum Kind {
     Bool,
 }
 
+/// A component by itself, a word of the machine wide.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Number {
+    Int(i64),
+    Float(f64),
+    Bool(bool),
+}
+
 /// The bits of each component.
 #[derive(Clone)]
 enum Parts {
@@ -115,6 +123,16 @@ impl Vector {
     /// A component, as the scalar that it is.
     pub fn get(&self, index: usize) -> Option<Value> {
         self.bits().get(index).map(|bits| scalar(self.kind, *bits))
+    }
+
+    /// The same for those who read many, as cameras are packed in every frame.
+    pub fn number(&self, index: usize) -> Option<Number> {
+        let bits = *self.bits().get(index)?;
+        Some(match self.kind {
+            Kind::Int => Number::Int(bits as i64),
+            Kind::Float => Number::Float(f64::from_bits(bits)),
+            Kind::Bool => Number::Bool(bits != 0),
+        })
     }
 
     pub fn iter(&self) -> impl ExactSizeIterator<Item = Value> + Clone + '_ {
