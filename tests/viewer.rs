@@ -13,6 +13,8 @@ mod graph;
 mod project;
 #[path = "viewer/sequences.rs"]
 mod sequences;
+#[path = "viewer/statistics.rs"]
+mod statistics;
 #[path = "viewer/trouble.rs"]
 mod trouble;
 
@@ -194,6 +196,30 @@ fn a_pass_that_is_switched_off_does_not_run() {
     assert!(larger != first, "it does not run again");
     desk.core.act(Action::Set { path: "size".into(), value: None });
     assert!(larger != desk.picture() && desk.picture() == first);
+}
+
+#[test]
+fn what_has_no_camera_is_framed_for_the_window() {
+    if !has_adapter() {
+        return;
+    }
+    let free = || {
+        let project = Project::new();
+        project.edit(SCENE, "    size: (800, 600),\n", "");
+        project.edit(SCENE, "    camera: Camera(eye: (1.2, 1.1, 1.6), target: (0.0, 0.45, 0.0), fov: 40.0),\n", "");
+        project
+    };
+    let mut desk = Desk::resized(free(), [60, 160]);
+    let shown = desk.picture();
+    let fresh = |desk: &Desk, size: &str| {
+        let made = desk.project.run(&["render", SCENE, "-o", "fresh.png", "--size", size]);
+        assert_eq!(made.code, 0, "{}", made.stderr);
+        std::fs::read(desk.project.path("fresh.png")).unwrap()
+    };
+    assert!(shown == fresh(&desk, "60x160"), "not framed as `render` frames it");
+    // Framing for another shape would show.
+    let wide = Desk::resized(free(), [160, 120]);
+    assert!(wide.core.state.home != desk.core.state.home);
 }
 
 #[test]

@@ -63,6 +63,8 @@ pub enum Action {
     },
     /// Whether every pass runs in each frame, also those whose results are there.
     RunAll(bool),
+    /// Whether the graph's statistics are looked at.
+    Count(bool),
     Look(Option<Look>),
     /// Finds the first pass that writes NaN or infinity.
     Hunt,

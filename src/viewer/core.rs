@@ -2,6 +2,7 @@
 //! and what a person asked for.
 
 mod act;
+mod count;
 mod files;
 mod frame;
 mod look;
@@ -10,6 +11,7 @@ mod rounds;
 
 use std::time::{Duration, Instant};
 
+use count::Counted;
 use frame::{InFlight, Made};
 
 use super::look::Look;
@@ -84,6 +86,7 @@ pub struct Core {
     told_gone: bool,
     /// A picture that is to be written.
     shot: Option<std::path::PathBuf>,
+    counted: Counted,
 }
 
 impl Core {
@@ -125,6 +128,7 @@ impl Core {
             run_all: false,
             told_gone: false,
             shot: None,
+            counted: Counted::default(),
         };
         if let Some(job) = job {
             core.open(job);
@@ -246,9 +250,10 @@ impl Core {
         if self.in_flight.is_none() && !self.is_lost && self.made.is_some() && self.is_fed() {
             tick.repaint |= self.at_rest();
         }
+        tick.repaint |= !self.is_lost && self.count();
         let goes_on = self.state.hunt.is_some() || self.state.recording.is_some();
         let plays = self.state.clock.is_playing && self.session.plan().is_some();
-        if self.in_flight.is_some() {
+        if self.in_flight.is_some() || self.counted.is_asked() {
             tick.again = Some(tick.again.map_or(POLL, |again| again.min(POLL)));
         } else if (goes_on || plays) && self.is_fed() {
             tick.again = Some(Duration::ZERO);
@@ -278,6 +283,7 @@ impl Core {
         if !self.is_fed() {
             self.wants.when = self.state.clock.when();
         }
+        self.wants.stats = self.state.counts;
         self.wants.roots = looked_at.filter(|path| self.can_be_root(path)).collect();
         if self.wants == self.sent {
             return;

@@ -15,6 +15,7 @@ use crate::diagnostic::{Diagnostics, Severity, Sources};
 use crate::engine::UnitReport;
 use crate::graph::value::Value;
 use crate::host::{Content, Input, Job};
+use crate::plan::stats::Statistic;
 use crate::scene::Camera;
 
 /// Reloads that are listed.
@@ -51,6 +52,10 @@ pub struct State {
     pub units: Vec<UnitReport>,
     /// Every pass runs in each frame, also those whose results are there.
     pub runs_all: bool,
+    /// Whether the graph's statistics are looked at.
+    pub counts: bool,
+    /// Those of the last frame, in the order of the plan.
+    pub statistics: Vec<Statistic>,
     pub findings: Option<Findings>,
     /// The newest first.
     pub reloads: VecDeque<Reload>,

@@ -21,6 +21,8 @@ pub struct Wants {
     pub viewport: Option<[u32; 2]>,
     /// Instance paths that are looked at.
     pub roots: Vec<String>,
+    /// Whether statistics are looked at: passes that only they need run then.
+    pub stats: bool,
     /// Which frame of sequences.
     pub when: When,
 }
@@ -222,7 +224,9 @@ impl Bench {
     }
 
     fn load(&mut self, cause: Cause, noticing: Duration) {
-        let Some(job) = self.job.clone() else { return };
+        let Some(mut job) = self.job.clone() else { return };
+        // What has no camera is framed for the window that shows it.
+        job.size = job.size.or(self.wants.viewport);
         let (since, began) = (SystemTime::now(), Instant::now());
         let mut sources = Sources::new();
         let loaded = load(&DiskFiles, &mut sources, &job, &mut self.cache);
@@ -264,6 +268,7 @@ impl Bench {
         let Some(read) = self.content.clone() else { return };
         let mut content = read.clone();
         params::apply(&mut content, &self.wants.params);
+        content.stats = self.wants.stats;
         content.viewport = self.wants.viewport.unwrap_or(content.viewport);
         let mut diagnostics = self.diagnostics.clone();
         let told = self.sequences.iter().flat_map(|sequences| sequences.told().iter());

@@ -55,10 +55,19 @@ impl Desk {
     }
 
     fn sized(project: Project, size: Option<[u32; 2]>) -> Self {
+        Self::in_window(project, size, [160, 120])
+    }
+
+    /// Opens the scene of a project in a window of a size.
+    pub fn resized(project: Project, window: [u32; 2]) -> Self {
+        Self::in_window(project, None, window)
+    }
+
+    fn in_window(project: Project, size: Option<[u32; 2]>, window: [u32; 2]) -> Self {
         let gpu = Gpu::open(&GpuOptions::default()).unwrap();
         let job = Job { source: project.path(SCENE), size, ..Job::default() };
         let mut desk = Self { core: Core::new(gpu, Some(job), || {}).unwrap(), project, shots: 0 };
-        desk.core.want_size([160, 120]);
+        desk.core.want_size(window);
         desk.until("the first picture", |core| core.state.frames > 0);
         desk
     }

@@ -58,6 +58,10 @@ impl Core {
                 self.state.runs_all = on;
                 self.version += 1;
             }
+            Action::Count(on) => {
+                self.state.counts = on;
+                self.state.statistics.clear();
+            }
             Action::Look(look) => self.state.look = look,
             Action::Hunt => self.state.hunt = Some(Hunt::default()),
             Action::Shoot(path) => self.shot = Some(path),

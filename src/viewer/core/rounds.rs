@@ -90,6 +90,7 @@ impl Core {
     }
 
     pub(super) fn installed(&mut self, built: &Built) {
+        self.counted.forget();
         self.version += 1;
         self.state.memory_bytes = built.memory_bytes;
         self.state.changes_over_time = self.session.changes_over_time();

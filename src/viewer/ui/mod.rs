@@ -189,7 +189,13 @@ fn side(ui: &mut Ui, core: &Core, layout: &mut Layout, actions: &mut Vec<Action>
     ui.separator();
     match layout.side {
         Side::Passes => passes::draw(ui, core, layout, actions),
-        Side::Reloads => reloads::draw(ui, core),
+        Side::Reloads => {
+            reloads::draw(ui, core);
+            if core.state.counts {
+                // Nothing runs for what nobody looks at.
+                actions.push(Action::Count(false));
+            }
+        }
     }
 }
 

@@ -33,11 +33,40 @@ pub fn draw(ui: &mut Ui, core: &Core, layout: &mut Layout, actions: &mut Vec<Act
             actions.push(Action::RunAll(all));
         }
     });
+    statistics(ui, core, plan, actions);
     ui.separator();
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
         rows(ui, core, plan, layout, actions);
         culled(ui, plan);
     });
+}
+
+/// The graph's statistics. While they are not looked at, nothing runs for them and nothing is read back.
+fn statistics(ui: &mut Ui, core: &Core, plan: &Plan, actions: &mut Vec<Action>) {
+    if plan.stats.is_empty() {
+        return;
+    }
+    let shown = ui.collapsing(format!("{} statistics", plan.stats.len()), |ui| {
+        egui::Grid::new("statistics").num_columns(2).striped(true).show(ui, |ui| {
+            for stat in &plan.stats {
+                ui.label(&stat.path).on_hover_text(&stat.text);
+                let value = core.state.statistics.iter().find(|known| known.path == stat.path);
+                match (value.map(|known| known.value), &stat.missing) {
+                    (Some(Some(value)), _) => _ = ui.monospace(value.to_string()),
+                    (Some(None), Some(path)) => {
+                        _ = ui.weak("no value").on_hover_text(format!("nothing writes `{path}` as things are"));
+                    }
+                    (Some(None), None) => _ = ui.weak("no value"),
+                    (None, _) => _ = ui.weak("-"),
+                }
+                ui.end_row();
+            }
+        });
+    });
+    let is_open = shown.openness > 0.0;
+    if is_open != core.state.counts {
+        actions.push(Action::Count(is_open));
+    }
 }
 
 fn rows(ui: &mut Ui, core: &Core, plan: &Plan, layout: &mut Layout, actions: &mut Vec<Action>) {
