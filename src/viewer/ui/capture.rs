@@ -71,5 +71,5 @@ pub fn draw(ui: &mut Ui, core: &Core, layout: &mut Layout, actions: &mut Vec<Act
             }
         }
     });
-    layout.capture.is_open &= is_open;
+    layout.capture.is_open &= is_open && !super::is_left(ui);
 }

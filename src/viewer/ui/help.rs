@@ -19,7 +19,7 @@ const KEYS: &[(&str, &str)] = &[
     ("R", "start again"),
     ("Ctrl + S", "save changed parameters to the scene"),
     ("F5", "read all files again"),
-    ("F1", "this help"),
+    ("F1, Esc", "this help, and away with it"),
 ];
 
 pub fn draw(ui: &mut Ui, layout: &mut Layout) {
@@ -40,5 +40,5 @@ pub fn draw(ui: &mut Ui, layout: &mut Layout) {
             ui.add_space(6.0);
             ui.weak("drop a file on the window to open it");
         });
-    layout.shows_help = is_open;
+    layout.shows_help = is_open && !super::is_left(ui);
 }

@@ -199,6 +199,11 @@ fn side(ui: &mut Ui, core: &Core, layout: &mut Layout, actions: &mut Vec<Action>
     }
 }
 
+/// Whether Escape was pressed, which closes what lies over the picture.
+fn is_left(ui: &Ui) -> bool {
+    ui.input(|input| input.key_pressed(egui::Key::Escape))
+}
+
 /// The end of a path, which tells most.
 fn ending(text: &str, most: usize) -> String {
     let count = text.chars().count();
