@@ -96,7 +96,7 @@ fn a_changed_parameter_is_saved_and_all_else_stays() {
     assert!(changed != first, "the parameter does not show");
     assert_eq!(desk.project.text(SCENE), before, "nobody asked to save");
 
-    desk.core.act(Action::SaveParams);
+    desk.core.act(Action::Save);
     assert!(desk.notice().starts_with("2 values saved"), "{}", desk.notice());
     let expected = before
         .replace("\"size\": 1.5", "\"size\": 3.0")
@@ -112,7 +112,7 @@ fn a_changed_parameter_is_saved_and_all_else_stays() {
     // A scene that is no scene any more is not written over.
     desk.project.write(SCENE, "Scene(params: [");
     desk.core.act(set("size", Value::Float(4.0)));
-    desk.core.act(Action::SaveParams);
+    desk.core.act(Action::Save);
     assert!(desk.notice().starts_with("nothing was saved"), "{}", desk.notice());
     assert_eq!(desk.project.text(SCENE), "Scene(params: [");
 }

@@ -83,6 +83,13 @@ impl Job {
     }
 }
 
+impl Job {
+    /// Whether anything stands beside the scene that its file does not name.
+    pub fn has_dropped(&self) -> bool {
+        !self.meshes.is_empty() || self.environment.is_some()
+    }
+}
+
 /// What loading gave.
 #[derive(Debug)]
 pub struct Loaded {

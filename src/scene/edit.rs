@@ -45,6 +45,27 @@ pub fn set_entry(text: &str, field: &str, name: &str, value: &str) -> Result<Str
     Ok(appended(text, bracket(text, map, '{', '}')?, ends, &format!("{name:?}: {value}")))
 }
 
+/// Adds this text to the list that an entry of a map is (`meshes`). An entry that is one thing becomes a list
+/// of both, and one that is not there a list of one.
+///
+/// # Errors
+/// If the text is no scene, or the field no map.
+pub fn add_item(text: &str, field: &str, name: &str, item: &str) -> Result<String, Refusal> {
+    let root = root(text)?;
+    let map = fields(&root)?.into_iter().find(|(known, _)| known == field).map(|(_, map)| map);
+    let entries = match map.map(|map| &map.kind) {
+        None => return set_entry(text, field, name, &format!("[{item}]")),
+        Some(Kind::Map(entries)) => entries,
+        Some(_) => return Err(format!("`{field}` is no map of names")),
+    };
+    let known = entries.iter().find(|(key, _)| key.as_str().is_some_and(|key| key.value == name));
+    let Some((_, node)) = known else { return set_entry(text, field, name, &format!("[{item}]")) };
+    match &node.kind {
+        Kind::List(items) => Ok(appended(text, bracket(text, node, '[', ']')?, items.first().zip(items.last()), item)),
+        _ => Ok(replaced(text, node, &format!("[{}, {item}]", &text[range(node)]))),
+    }
+}
+
 /// A value as scenes write it.
 pub fn written(value: &Value) -> String {
     match value {
@@ -205,6 +226,22 @@ mod tests {
         let commented = edit("Scene(params: { // none\n })");
         assert_eq!(commented, "Scene(params: { \"b\": 2, // none\n })");
         root(&commented).expect("RON");
+    }
+
+    #[test]
+    fn an_item_joins_those_that_are_there() {
+        let add = |text: &str| add_item(text, "meshes", "m", "\"b.obj\"").expect("an edit");
+        assert_eq!(add("Scene(meshes: {\"m\": [\"a.obj\"]})"), "Scene(meshes: {\"m\": [\"a.obj\", \"b.obj\"]})");
+        assert_eq!(
+            add("Scene(meshes: {\"m\": (file: \"a.obj\")})"),
+            "Scene(meshes: {\"m\": [(file: \"a.obj\"), \"b.obj\"]})"
+        );
+        assert_eq!(add("Scene(meshes: {\"m\": []})"), "Scene(meshes: {\"m\": [ \"b.obj\" ]})");
+        assert_eq!(add("Scene(meshes: {\"n\": \"a.obj\"})"), "Scene(meshes: {\"n\": \"a.obj\", \"m\": [\"b.obj\"]})");
+        assert_eq!(add("Scene()"), "Scene( meshes: { \"m\": [\"b.obj\"] } )");
+        let tall = "Scene(meshes: {\"m\": [\n    \"a.obj\", // first\n]})";
+        assert_eq!(add(tall), "Scene(meshes: {\"m\": [\n    \"a.obj\", // first\n    \"b.obj\",\n]})");
+        assert!(add_item("Scene(meshes: [])", "meshes", "m", "1").is_err());
     }
 
     #[test]

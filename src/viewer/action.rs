@@ -20,8 +20,8 @@ pub enum Action {
     },
     /// All values as the files have them.
     ResetParams,
-    /// Puts the changed values into the scene file.
-    SaveParams,
+    /// Puts the changed values into the scene file, and what was dropped onto the scene.
+    Save,
     /// Puts the camera into the scene file.
     SaveCamera,
     Camera(Camera),

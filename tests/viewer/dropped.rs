@@ -88,6 +88,44 @@ fn a_mesh_becomes_a_body_and_a_picture_the_environment() {
 }
 
 #[test]
+fn what_was_dropped_is_saved_into_the_scene() {
+    if !has_adapter() {
+        return;
+    }
+    let mut desk = Desk::new();
+    desk.core.act(Action::Save);
+    assert_eq!(desk.notice(), "nothing was changed");
+    let scene = "scenes/assets/dots.ron";
+    for (name, more) in [("a.obj", ""), ("b.obj", "v 0 3 0\n")] {
+        desk.project.write(&format!("scenes/assets/{name}"), format!("{WALL}{more}"));
+    }
+    let sky = image::RgbImage::from_fn(8, 4, |x, _| image::Rgb([255, 30 * x as u8, 0]));
+    sky.save(desk.project.path("sky.png")).unwrap();
+
+    // Particles alone get a scene beside them; from then on it is the scene that is written.
+    open(&mut desk, "scenes/assets/dots.csv");
+    open(&mut desk, "scenes/assets/a.obj");
+    desk.core.act(Action::Save);
+    assert_eq!(desk.notice(), "1 file saved to dots.ron");
+    desk.rest();
+    open(&mut desk, "scenes/assets/b.obj");
+    open(&mut desk, "sky.png");
+    let dropped = desk.picture();
+    desk.core.act(Action::Save);
+    assert_eq!(desk.notice(), "2 files saved to dots.ron");
+    desk.rest();
+    assert_eq!(given(&desk), (0, false), "nothing stands there twice");
+    let text = desk.project.text(scene);
+    assert!(text.contains("[\"a.obj\", \"b.obj\"]"), "{text}");
+    assert!(text.contains(&format!("environment: {:?}", desk.project.path("sky.png"))), "{text}");
+    assert!(desk.picture() == dropped, "the scene has what was dropped");
+
+    // Whoever opens it anew sees the same.
+    desk.core.act(Action::Open(desk.project.path(scene)));
+    assert!(desk.picture() == dropped);
+}
+
+#[test]
 fn a_mesh_opens_by_itself_where_nothing_is_open() {
     if !has_adapter() {
         return;

@@ -32,7 +32,7 @@ impl Core {
                 self.state.busy = Some(Instant::now());
                 self.worker.reload();
             }
-            Action::SaveParams => self.save_params(),
+            Action::Save => self.save_changes(),
             Action::SaveCamera => self.save_camera(),
             Action::Edit { path, line, column } => {
                 if let Err(why) = editor::open(&path, line, column) {

@@ -77,30 +77,43 @@ impl Core {
         self.reopen(job);
     }
 
-    /// Puts changed parameters into the scene file.
-    pub(super) fn save_params(&mut self) {
+    /// Puts changed parameters into the scene file, and what was dropped onto the scene.
+    pub(super) fn save_changes(&mut self) {
         let declared: Vec<&String> = self.state.groups.iter().flat_map(|g| &g.params).map(|p| &p.path).collect();
         let changed = self.state.overrides.iter().filter(|(path, _)| declared.contains(path));
         let changed: Vec<(String, Value)> = changed.map(|(path, value)| (path.clone(), value.clone())).collect();
-        if changed.is_empty() {
-            self.state.say("no parameter was changed");
+        let Some(job) = self.state.job.clone() else { return };
+        let dropped = job.meshes.len() + usize::from(job.environment.is_some());
+        if changed.is_empty() && dropped == 0 {
+            self.state.say("nothing was changed");
             return;
         }
-        let count = changed.len();
         let saved = self.save(&|text| {
-            changed.iter().try_fold(text.to_owned(), |text, (path, value)| {
+            let text = changed.iter().try_fold(text.to_owned(), |text, (path, value)| {
                 let (section, name) = match path.strip_prefix(PRESENT) {
                     Some(name) => ("present", name),
                     None => ("params", path.as_str()),
                 };
                 edit::set_entry(&text, section, name, &edit::written(value))
-            })
+            })?;
+            let text = job.meshes.iter().try_fold(text, |text, (input, path)| {
+                edit::add_item(&text, "meshes", input, &named(path, &job.source))
+            })?;
+            match &job.environment {
+                Some(path) => edit::set_field(&text, "environment", &named(path, &job.source)),
+                None => Ok(text),
+            }
         });
-        let plural = if count == 1 { "" } else { "s" };
         match saved {
             Ok(path) => {
-                self.state.say(format!("{count} value{plural} saved to {}", short(&path)));
-                self.forget_typed(&changed);
+                let counted = |count: usize, what: &str| {
+                    let plural = if count == 1 { "" } else { "s" };
+                    (count > 0).then(|| format!("{count} {what}{plural}"))
+                };
+                let parts: Vec<String> =
+                    [counted(changed.len(), "value"), counted(dropped, "file")].into_iter().flatten().collect();
+                self.state.say(format!("{} saved to {}", parts.join(" and "), short(&path)));
+                self.forget_given(&changed);
             }
             Err(why) => self.state.say(format!("nothing was saved: {why}")),
         }
@@ -119,12 +132,15 @@ impl Core {
         }
     }
 
-    /// Values of the command line would hide those that were saved.
-    fn forget_typed(&mut self, saved: &[(String, Value)]) {
+    /// What the scene has now is not given beside it any more: values of the command line would hide those that were
+    /// saved, and a body would stand there twice.
+    fn forget_given(&mut self, saved: &[(String, Value)]) {
         let Some(mut job) = self.state.job.clone() else { return };
-        let before = job.set.len();
+        let before = (job.set.len(), job.meshes.len(), job.environment.is_some());
         job.set.retain(|(name, _)| saved.iter().all(|(path, _)| path != name));
-        if job.set.len() != before {
+        job.meshes.clear();
+        job.environment = None;
+        if before != (job.set.len(), 0, false) {
             self.reopen(job);
         }
     }
@@ -178,6 +194,15 @@ impl Core {
             None => Ok(text),
         }
     }
+}
+
+/// A file as a scene names it: from the scene's folder if it lies below it.
+fn named(path: &Path, scene: &Path) -> String {
+    let (path, scene) = (absolute(path), absolute(scene));
+    let below = scene.parent().and_then(|folder| path.strip_prefix(folder).ok()).unwrap_or(&path);
+    let parts: Vec<_> = below.components().map(|part| part.as_os_str().to_string_lossy()).collect();
+    let text = if below.is_absolute() { below.display().to_string() } else { parts.join("/") };
+    format!("{text:?}")
 }
 
 fn absolute(path: &Path) -> PathBuf {

@@ -17,7 +17,7 @@ const KEYS: &[(&str, &str)] = &[
     ("Space", "play, pause"),
     (", and .", "a frame back, a frame on"),
     ("R", "start again"),
-    ("Ctrl + S", "save changed parameters to the scene"),
+    ("Ctrl + S", "save changed parameters and dropped files to the scene"),
     ("F5", "read all files again"),
     ("F1, Esc", "this help, and away with it"),
 ];

@@ -5,6 +5,7 @@ use egui::{ComboBox, DragValue, RichText, ScrollArea, Slider, Ui};
 use super::{Layout, theme};
 use crate::graph::model::ParamKind;
 use crate::graph::value::Value;
+use crate::host::Job;
 use crate::plan::model::Param;
 use crate::viewer::action::Action;
 use crate::viewer::core::Core;
@@ -40,11 +41,15 @@ fn header(ui: &mut Ui, core: &Core, layout: &mut Layout, actions: &mut Vec<Actio
     ui.horizontal(|ui| {
         ui.strong("Parameters");
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            let changed = core.state.overrides.len();
-            ui.add_enabled_ui(changed > 0, |ui| {
-                if ui.button("Save").on_hover_text("put the changed values into the scene file (Ctrl+S)").clicked() {
-                    actions.push(Action::SaveParams);
+            let is_changed = !core.state.overrides.is_empty();
+            let has_dropped = core.state.job.as_ref().is_some_and(Job::has_dropped);
+            ui.add_enabled_ui(is_changed || has_dropped, |ui| {
+                let what = "put the changed values into the scene file, and files that were dropped (Ctrl+S)";
+                if ui.button("Save").on_hover_text(what).clicked() {
+                    actions.push(Action::Save);
                 }
+            });
+            ui.add_enabled_ui(is_changed, |ui| {
                 if ui.button("Reset").on_hover_text("all values as the scene has them").clicked() {
                     actions.push(Action::ResetParams);
                 }

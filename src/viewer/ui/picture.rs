@@ -138,7 +138,7 @@ pub fn keys(ui: &Ui, core: &Core, layout: &mut Layout, actions: &mut Vec<Action>
             actions.push(if i.modifiers.command { Action::Keep(slot) } else { Action::GoTo(slot) });
         }
         if i.modifiers.command && i.key_pressed(Key::S) {
-            actions.push(Action::SaveParams);
+            actions.push(Action::Save);
         }
     });
 }

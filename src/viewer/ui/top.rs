@@ -57,7 +57,8 @@ fn given(ui: &mut Ui, core: &Core, actions: &mut Vec<Action>) {
     let Some(job) = &core.state.job else { return };
     for path in job.meshes.iter().map(|(_, path)| path).chain(&job.environment) {
         ui.separator();
-        ui.label(short(path)).on_hover_text(format!("dropped onto the scene: {}", path.display()));
+        ui.label(short(path))
+            .on_hover_text(format!("dropped onto the scene: {}\nCtrl+S puts it into the scene file", path.display()));
         if ui.small_button("x").on_hover_text("take it away").clicked() {
             actions.push(Action::TakeAway(path.clone()));
         }
