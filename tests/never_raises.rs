@@ -84,7 +84,7 @@ fn random_graphs_raise_no_error(engine: &mut Engine) {
             PassKind::Settle { .. } => "settle",
             PassKind::Arguments { .. } => "arguments",
         }));
-        plan.memory.policy = if seed % 2 == 0 { Policy::Keep } else { Policy::Smallest };
+        plan.memory.policy = Policy::ALL[seed as usize % 3];
         if let Err(found) = run(engine, plan) {
             panic!("seed {seed}: {:?}\n{}", found.iter().map(|d| &d.message).collect::<Vec<_>>(), graph.graph);
         }
@@ -221,9 +221,10 @@ fn a_usage_that_is_missing_is_caught(engine: &mut Engine) {
 
 /// Gives each object memory of its own.
 fn alone(plan: &mut Plan) {
-    for slots in [&mut plan.memory.keep, &mut plan.memory.smallest] {
+    for slots in [&mut plan.memory.keep, &mut plan.memory.share, &mut plan.memory.smallest] {
         slots.clear();
     }
+    plan.memory.cuts.clear();
 }
 
 fn a_view_beyond_its_texture_is_caught(engine: &mut Engine) {

@@ -12,6 +12,7 @@ mod planning;
 
 mod plan {
     mod culling;
+    mod cuts;
     mod inserted;
     mod memory;
     mod order;

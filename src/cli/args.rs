@@ -88,8 +88,8 @@ pub struct SceneArgs {
 /// How resources share memory.
 #[derive(Args, Clone, Copy, Debug, Default)]
 pub struct MemoryArgs {
-    /// How resources share memory: `keep` what skipping needs, `smallest` if every pass runs in each frame;
-    /// `auto` goes by what changes, and by the budget
+    /// How resources share memory: `keep` what skipping needs, `share` if every pass runs in each frame,
+    /// `smallest` if the frame waits besides to give memory back; `auto` goes by what changes, and by the budget
     #[arg(long, value_enum, value_name = "POLICY", default_value_t = PolicyArg::Auto)]
     pub policy: PolicyArg,
     /// The most that textures and buffers may take: bytes, or with KiB, MiB or GiB behind
@@ -102,6 +102,7 @@ impl MemoryArgs {
         match self.policy {
             PolicyArg::Auto => None,
             PolicyArg::Keep => Some(Policy::Keep),
+            PolicyArg::Share => Some(Policy::Share),
             PolicyArg::Smallest => Some(Policy::Smallest),
         }
     }
@@ -112,6 +113,7 @@ pub enum PolicyArg {
     #[default]
     Auto,
     Keep,
+    Share,
     Smallest,
 }
 

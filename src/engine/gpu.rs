@@ -231,8 +231,17 @@ impl Gpu {
     /// # Errors
     /// If it does not end within five minutes, or the device was lost or refused something.
     pub fn wait(&self) -> Result<(), Diagnostic> {
-        let waited = self.device.poll(wgpu::PollType::Wait { submission_index: None, timeout: Some(LONGEST_WAIT) });
+        let waited = self.drain();
         self.check()?;
+        waited
+    }
+
+    /// The same without asking whether anything was refused.
+    ///
+    /// # Errors
+    /// If it does not end within five minutes.
+    pub(super) fn drain(&self) -> Result<(), Diagnostic> {
+        let waited = self.device.poll(wgpu::PollType::Wait { submission_index: None, timeout: Some(LONGEST_WAIT) });
         waited.map(|_| ()).map_err(|e| errors::wait_failed(&e, LONGEST_WAIT))
     }
 

@@ -14,6 +14,7 @@ mod claims;
 mod clear;
 mod compile;
 mod convert;
+mod cuts;
 mod draws;
 mod encode;
 mod errors;

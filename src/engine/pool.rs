@@ -6,6 +6,7 @@ use std::collections::BTreeSet;
 use wgpu_types::{BufferUsages, TextureUsages};
 
 use super::bind::references;
+use super::cuts::Cuts;
 use super::errors;
 use super::gpu::Gpu;
 use crate::diagnostic::{Diagnostic, Diagnostics};
@@ -59,29 +60,37 @@ pub(super) struct Pool {
 
 impl Pool {
     /// Lays out the objects of a plan, takes over what fits of an earlier pool, and makes the
-    /// rest, but for inputs: those get memory when somebody fills or shares them.
+    /// rest, but for inputs, which get memory when somebody fills or shares them, and for what the
+    /// frame makes behind a cut.
     ///
     /// `state_kept[steps]` says whether the state of that block goes on.
     ///
     /// # Errors
     /// For each object that the device refuses.
-    pub fn new(gpu: &Gpu, plan: &Plan, previous: Option<&Pool>, state_kept: &[bool]) -> Result<Self, Diagnostics> {
+    pub fn new(
+        gpu: &Gpu,
+        plan: &Plan,
+        previous: Option<&Pool>,
+        state_kept: &[bool],
+    ) -> Result<(Self, Cuts), Diagnostics> {
         let mut pool = Self::lay_out(gpu, plan);
+        let cuts = Cuts::new(plan, &pool);
         if let Some(previous) = previous {
-            pool.take_over(previous, state_kept);
+            pool.take_over(previous, state_kept, &cuts);
         }
         let mut found = Diagnostics::new();
         // What passes that were left out would have used has no use, and no memory.
         let used: BTreeSet<Handle> = used(plan).into_iter().map(|id| pool.of[id]).collect();
         for at in 0..pool.slots.len() {
             if !is_input(&pool.slots[at].origin)
+                && !cuts.is_late(Handle(at))
                 && used.contains(&Handle(at))
                 && let Err(diagnostic) = pool.ensure_slot(gpu, plan, at)
             {
                 found.push(diagnostic);
             }
         }
-        if found.is_empty() { Ok(pool) } else { Err(found) }
+        if found.is_empty() { Ok((pool, cuts)) } else { Err(found) }
     }
 
     fn lay_out(gpu: &Gpu, plan: &Plan) -> Self {
@@ -123,9 +132,10 @@ impl Pool {
 
     /// Memory of the same path and description first, then any of the same description that
     /// nobody else takes. State and inputs only ever go to their own name.
-    fn take_over(&mut self, previous: &Pool, state_kept: &[bool]) {
+    fn take_over(&mut self, previous: &Pool, state_kept: &[bool], cuts: &Cuts) {
         let mut taken = vec![false; previous.slots.len()];
-        for slot in &mut self.slots {
+        let may = |at: usize| !cuts.is_late(Handle(at));
+        for (_, slot) in self.slots.iter_mut().enumerate().filter(|(at, _)| may(*at)) {
             if matches!(slot.origin, Origin::State(steps) if state_kept.get(steps) != Some(&true)) {
                 continue;
             }
@@ -140,7 +150,8 @@ impl Pool {
                 slot.foreign = previous.slots[at].foreign;
             }
         }
-        for slot in self.slots.iter_mut().filter(|s| s.memory.is_none() && s.origin == Origin::Frame) {
+        let wants = |slot: &Slot| slot.memory.is_none() && slot.origin == Origin::Frame;
+        for (_, slot) in self.slots.iter_mut().enumerate().filter(|(at, slot)| may(*at) && wants(slot)) {
             let fits =
                 previous.slots.iter().enumerate().position(|(at, old)| {
                     !taken[at] && old.origin == Origin::Frame && old.description == slot.description
@@ -205,6 +216,28 @@ impl Pool {
         let slot = &mut self.slots[self.of[object].0];
         slot.memory = None;
         slot.foreign = false;
+    }
+
+    /// Lets go of the memory that a handle stands for.
+    pub fn let_go(&mut self, handle: Handle) {
+        self.slots[handle.0].memory = None;
+    }
+
+    /// Makes the memory that a handle stands for, if it is not there.
+    ///
+    /// # Errors
+    /// If the device refuses it.
+    pub fn make(&mut self, gpu: &Gpu, plan: &Plan, handle: Handle) -> Result<(), Diagnostic> {
+        self.ensure_slot(gpu, plan, handle.0).map(|_| ())
+    }
+
+    pub fn is_there(&self, handle: Handle) -> bool {
+        self.slots[handle.0].memory.is_some()
+    }
+
+    /// Bytes of what a handle stands for, there or not.
+    pub fn bytes_of(&self, handle: Handle) -> u64 {
+        bytes(&self.slots[handle.0].description)
     }
 
     /// Puts somebody else's memory behind an object's handle. Tells whether that is news.

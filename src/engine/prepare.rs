@@ -10,6 +10,7 @@ use super::claims::{Claimant, Claims};
 use super::clear;
 use super::compile::Compiler;
 use super::convert;
+use super::cuts::Cuts;
 use super::errors;
 use super::gpu::Gpu;
 use super::kernels;
@@ -41,6 +42,10 @@ pub struct Engine {
 pub struct Runner {
     pub(super) plan: Plan,
     pub(super) pool: Pool,
+    /// Where memory is given back in the middle of a frame.
+    pub(super) cuts: Cuts,
+    /// Bytes that the last frame held at once, at the most.
+    pub(super) peak: u64,
     pub(super) pipelines: Vec<Option<Arc<Pipeline>>>,
     /// Of draws of meshes.
     pub(super) by_faces: Vec<Option<ByFaces>>,
@@ -125,7 +130,7 @@ impl Engine {
         check_features(&self.gpu, &plan)?;
         let (pipelines, by_faces, compiled) = self.compiler.pipelines(&plan)?;
         let state_kept = state_kept(&plan, previous);
-        let pool = Pool::new(&self.gpu, &plan, previous.map(|p| &p.pool), &state_kept)?;
+        let (pool, cuts) = Pool::new(&self.gpu, &plan, previous.map(|p| &p.pool), &state_kept)?;
         let fixed = errors::scoped(&self.gpu, || Fixed::new(&self.gpu, &plan))
             .map_err(|e| Diagnostic::error(Code::DEVICE, format!("the device refused the engine's buffers: {e}")))?;
         let kept_inputs = (0..plan.objects.len()).map(|id| is_input(&plan, id) && pool.memory(id).is_some()).collect();
@@ -173,6 +178,8 @@ impl Engine {
             kept_inputs,
             plan,
             pool,
+            cuts,
+            peak: 0,
             uniforms,
             fixed,
         };
@@ -206,6 +213,12 @@ impl Runner {
     /// Bytes of textures and buffers that are held now, without what others share with it.
     pub fn memory_bytes(&self) -> u64 {
         self.pool.bytes() + self.materials.bytes()
+    }
+
+    /// Bytes of textures and buffers that a frame holds at once, at the most: more than are held now
+    /// where it is cut into parts.
+    pub fn most_bytes(&self) -> u64 {
+        self.memory_bytes() + self.later_bytes()
     }
 
     /// Starts all state anew: zeroed memory, no step done.

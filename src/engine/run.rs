@@ -120,7 +120,7 @@ impl Runner {
         let live =
             |name: &str, step: Option<&StepInfo>| (frame.live)(name, step).or_else(|| own_value(frame, name, step));
         self.notice(&|name| live(name, None));
-        let runs_any = self.changes.decide(frame.steps, self.runs_all, self.plan.memory.policy == Policy::Smallest);
+        let runs_any = self.changes.decide(frame.steps, self.runs_all, self.plan.memory.policy != Policy::Keep);
         self.timing.begin(gpu, &self.plan, frame.frame, runs(&self.plan, steps));
         self.timing.decided(self.changes.decision());
         if !runs_any {
@@ -277,13 +277,17 @@ impl Runner {
         steps: &[StepInfo],
         mut recorder: Recorder<'_>,
     ) -> Result<(), Diagnostic> {
+        let is_own = recorder.is_own();
+        self.begin_parts(gpu, is_own)?;
         self.clear_counts(recorder.encoder(), frame.only);
         let mut staged = 0;
         let mut at = 0;
         while at < self.plan.passes.len() {
+            self.cut(gpu, &mut recorder, at)?;
             let Some(block) = self.plan.steps.iter().position(|s| s.passes.contains(&at)) else {
                 let next = (at..self.plan.passes.len()).find(|p| self.plan.steps.iter().any(|s| s.passes.start == *p));
                 let end = next.unwrap_or(self.plan.passes.len()).max(at + 1);
+                let end = self.cuts.next(at).map_or(end, |cut| end.min(cut));
                 self.encode_range(gpu, frame.only, &mut recorder, at..end)?;
                 at = end;
                 continue;
@@ -303,6 +307,7 @@ impl Runner {
             self.timing.capture(gpu, recorder.encoder(), &self.fixed.stats);
         }
         self.timing.handed_over(recorder.end(gpu));
+        self.end_parts(is_own);
         Ok(())
     }
 

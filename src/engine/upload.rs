@@ -144,7 +144,9 @@ impl Runner {
     /// If the device refuses a write.
     pub fn poison(&mut self, engine: &Engine) -> Result<(), Diagnostic> {
         for object in 0..self.plan.objects.len() {
-            if self.plan.objects[object].origin != Origin::Frame {
+            // What the frame makes behind a cut is not there yet.
+            let is_made_later = self.cuts.is_late(self.pool.handle(object)) && self.pool.memory(object).is_none();
+            if self.plan.objects[object].origin != Origin::Frame || is_made_later {
                 continue;
             }
             match self.plan.objects[object].kind.clone() {

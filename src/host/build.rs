@@ -162,7 +162,7 @@ impl Session {
             pipelines_built: compiled.built + pipelines_late,
             pipelines_late,
             pipelines_reused: reused.saturating_sub(compiled.built),
-            memory_bytes: graph.memory_bytes() + present.memory_bytes(),
+            memory_bytes: graph.most_bytes() + present.most_bytes(),
             diagnostics: warnings,
             resets: held.resets(graph.plan(), &reports[0].state_kept),
         };

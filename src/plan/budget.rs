@@ -1,9 +1,11 @@
 //! Which policy a plan's memory follows, and whether it keeps to a budget (rule 38).
 //!
 //! Keeping is for pictures of which little changes from one to the next. Where inputs change in
-//! each frame and at least half of the passes run for them anyway, the smallest policy holds. A
-//! budget that keeping exceeds makes it the smallest one too; one that even that exceeds is told.
+//! each frame and at least half of the passes run for them anyway, sharing by lifetimes holds. A
+//! budget that keeping exceeds makes it sharing too, or the smallest policy with as few cuts of the
+//! frame as it takes; one that even that exceeds is told.
 
+use super::cuts;
 use super::memory;
 use super::model::{Causes, MemoryRequest, ObjectId, ObjectKind, Origin, Plan, Policy, Why};
 use super::print::bytes;
@@ -22,20 +24,31 @@ impl Plan {
             Some(asked) => (asked, Why::Asked),
             None => by_change(self, request),
         };
-        let within = |policy: Policy| {
-            request.budget.is_none_or(|budget| self.memory.held(policy).saturating_add(request.elsewhere) <= budget)
-        };
-        if !within(policy) && request.policy.is_none() && within(Policy::Smallest) {
+        let before = self.part(None);
+        let held = |plan: &Plan, policy: Policy| plan.memory.held(policy).saturating_add(request.elsewhere);
+        let within = |plan: &Plan, policy: Policy| request.budget.is_none_or(|budget| held(plan, policy) <= budget);
+        if !within(self, policy) && request.policy.is_none() {
             why = Why::Budget { keeping: self.memory.held(policy) };
-            policy = Policy::Smallest;
+            policy = if within(self, Policy::Share) { Policy::Share } else { Policy::Smallest };
         }
-        if let Some(budget) = request.budget.filter(|_| !within(policy)) {
-            return Err(too_small(self, request, budget));
+        if let Some(budget) = request.budget.filter(|_| policy == Policy::Smallest) {
+            self.part(Some(budget.saturating_sub(self.memory.outside + request.elsewhere)));
+        }
+        if let Some(budget) = request.budget.filter(|_| !within(self, policy)) {
+            let found = too_small(self, request, budget);
+            before.put(&mut self.memory);
+            return Err(found);
         }
         self.memory.policy = policy;
         self.memory.why = why;
         self.memory.budget = request.budget;
         Ok(())
+    }
+
+    /// Parts the frame for the smallest policy, and gives what was there before.
+    fn part(&mut self, room: Option<u64>) -> cuts::Parted {
+        let parted = cuts::parted(self, room);
+        parted.put(&mut self.memory)
     }
 }
 
@@ -50,7 +63,7 @@ fn by_change(plan: &Plan, request: &MemoryRequest) -> (Policy, Why) {
     };
     let is_run = |pass: &&super::model::Pass| pass.steps.is_none() && moves(&plan.units[pass.unit].causes);
     let passes = plan.passes.iter().filter(is_run).count();
-    let policy = if passes * 2 >= of { Policy::Smallest } else { Policy::Keep };
+    let policy = if passes * 2 >= of { Policy::Share } else { Policy::Keep };
     (policy, Why::Moving { passes, of })
 }
 
@@ -59,7 +72,7 @@ fn too_small(plan: &Plan, request: &MemoryRequest, budget: u64) -> Box<Diagnosti
     let memory = &plan.memory;
     let least = request.policy.unwrap_or(Policy::Smallest);
     let needed = memory.held(least) + request.elsewhere;
-    let mut parts = vec![format!("{} of the frame", bytes(memory::total(memory.slots(least))))];
+    let mut parts = vec![format!("{} of the frame", bytes(memory.of_frame(least)))];
     if memory.outside > 0 {
         parts.push(format!("{} of inputs and state", bytes(memory.outside)));
     }
@@ -89,9 +102,15 @@ fn too_small(plan: &Plan, request: &MemoryRequest, budget: u64) -> Box<Diagnosti
 }
 
 fn hint(plan: &Plan, request: &MemoryRequest, budget: u64) -> String {
-    let smallest = plan.memory.held(Policy::Smallest) + request.elsewhere;
-    if smallest <= budget {
-        return format!("the policy \"smallest\" holds {}, and has every pass run in each frame", bytes(smallest));
+    let held = |policy: Policy| plan.memory.held(policy) + request.elsewhere;
+    if let Some(less) = Policy::ALL.into_iter().find(|policy| held(*policy) <= budget) {
+        let waits = match plan.memory.cuts(less).len() {
+            0 => String::new(),
+            1 => ", and waits for the device once in it".into(),
+            n => format!(", and waits for the device {n} times in it"),
+        };
+        let (name, held) = (less.name(), bytes(held(less)));
+        return format!("the policy \"{name}\" holds {held}, and has every pass run in each frame{waits}");
     }
     let is_of_picture = |id: &ObjectId| match &plan.objects[*id].kind {
         ObjectKind::Texture(texture) => [texture.width, texture.height] == plan.viewport,

@@ -42,7 +42,7 @@ pub(super) fn lifetimes(objects: &mut [Object], touched: &[Vec<ObjectId>], steps
     }
 }
 
-/// Which objects share memory under both policies. `runs` and `touched` have when each pass runs
+/// Which objects share memory where the frame stays whole. `runs` and `touched` have when each pass runs
 /// and its objects; `own` are outputs and what somebody looks at.
 pub(super) fn share(
     objects: &[Object],
@@ -51,30 +51,20 @@ pub(super) fn share(
     units: &[Unit],
     own: &BTreeSet<ObjectId>,
 ) -> Memory {
-    let of_frame: Vec<ObjectId> = (0..objects.len())
-        .filter(|id| objects[*id].origin == Origin::Frame && objects[*id].lifetime.is_some())
-        .collect();
     let mut apart = apart(runs, touched, units);
     apart.retain(|id, _| objects[*id].origin == Origin::Frame);
     apart.extend(own.iter().map(|id| (*id, Apart::LookedAt)));
-    // What is looked at after the frame lives to its end, and is there until the next.
-    let lives: Vec<Life> = (of_frame.iter())
-        .filter_map(|id| {
-            let (first, last) = objects[*id].lifetime?;
-            let last = if own.contains(id) { runs.len().saturating_sub(1) } else { last };
-            Some(Life { id: *id, first, last, bytes: bytes(&objects[*id].kind) })
-        })
-        .collect();
+    let lives = lives(objects, runs.len(), &|id| own.contains(&id));
     let keep = slots(objects, &lives, &|id| !apart.contains_key(&id));
-    let mut smallest = slots(objects, &lives, &|_| true);
+    let mut share = slots(objects, &lives, &|_| true);
     // More freedom may lead a greedy choice astray; what may be kept is good enough for both then.
-    if total(&smallest) > total(&keep) {
-        smallest.clone_from(&keep);
+    if total(&share) > total(&keep) {
+        share.clone_from(&keep);
     }
     let (largest_at, lower_bound) = largest(&lives);
     Memory {
         keep,
-        smallest,
+        share,
         apart,
         unshared: lives.iter().map(|life| life.bytes).sum(),
         lower_bound,
@@ -87,11 +77,24 @@ pub(super) fn share(
 
 /// From which pass to which an object has to have memory.
 #[derive(Clone, Copy)]
-struct Life {
-    id: ObjectId,
-    first: usize,
-    last: usize,
-    bytes: u64,
+pub(super) struct Life {
+    pub id: ObjectId,
+    pub first: usize,
+    pub last: usize,
+    pub bytes: u64,
+}
+
+/// The objects of the frame that have memory, in order of first use. What is looked at after the
+/// frame lives to its end, and is there until the next.
+pub(super) fn lives(objects: &[Object], passes: usize, is_looked_at: &dyn Fn(ObjectId) -> bool) -> Vec<Life> {
+    let life = |(id, object): (ObjectId, &Object)| {
+        let (first, last) = object.lifetime.filter(|_| object.origin == Origin::Frame)?;
+        let last = if is_looked_at(id) { passes.saturating_sub(1) } else { last };
+        Some(Life { id, first, last, bytes: bytes(&object.kind) })
+    };
+    let mut lives: Vec<Life> = objects.iter().enumerate().filter_map(life).collect();
+    lives.sort_by_key(|life| (objects[life.id].lifetime, life.id));
+    lives
 }
 
 /// Bytes of all slots together.
@@ -120,16 +123,14 @@ fn apart(runs: &[Runs], touched: &[Vec<ObjectId>], units: &[Unit]) -> BTreeMap<O
     apart
 }
 
-/// Gives every object a slot, in order of first use: a free one of its class (the smallest that
+/// Gives every object a slot, in the order given, that of first use: a free one of its class (the smallest that
 /// is large enough, else the largest), else a new one.
 fn slots(objects: &[Object], lives: &[Life], may: &dyn Fn(ObjectId) -> bool) -> Vec<Slot> {
-    let mut order = lives.to_vec();
-    order.sort_by_key(|life| (objects[life.id].lifetime, life.id));
     let mut slots: Vec<Slot> = Vec::new();
     // Slots in use by the pass at which they become free; free ones by class and size.
     let mut busy: BinaryHeap<Reverse<(usize, usize)>> = BinaryHeap::new();
     let mut free: HashMap<Option<Texture>, BTreeSet<(u64, usize)>> = HashMap::new();
-    for Life { id, first, last, bytes: size } in order {
+    for &Life { id, first, last, bytes: size } in lives {
         if !may(id) {
             slots.push(Slot { objects: vec![id], bytes: size });
             continue;

@@ -64,7 +64,7 @@ fn kind(plan: &Plan, kind: &PassKind) -> SharedKind {
 }
 
 /// Every object that a reference can stand for.
-fn candidates(plan: &Plan, object: ObjectRef) -> Vec<ObjectId> {
+pub(super) fn candidates(plan: &Plan, object: ObjectRef) -> Vec<ObjectId> {
     match object {
         ObjectRef::Fixed(id) => vec![id],
         ObjectRef::Ring { ring, .. } => plan.rings[ring].objects.clone(),

@@ -7,6 +7,7 @@
 mod budget;
 pub mod changes;
 mod cull;
+mod cuts;
 pub mod explain;
 pub mod fields;
 mod fits;

@@ -138,7 +138,7 @@ pub fn objects_share_memory_as_the_policy_says(engine: &mut Engine) {
         for (id, value) in ids.into_iter().zip([0.0, 1.0, 0.0]) {
             plan.pass(&format!("clear{id}"), PassKind::Clear { view: plan.whole(id), value: [value; 4] });
         }
-        plan.memory.smallest = vec![Slot { objects: vec![ids[0], ids[2]], bytes: 64 * 64 * 4 }];
+        plan.memory.share = vec![Slot { objects: vec![ids[0], ids[2]], bytes: 64 * 64 * 4 }];
         (plan, ids)
     };
     let (keep, ids) = plan();
@@ -147,7 +147,7 @@ pub fn objects_share_memory_as_the_policy_says(engine: &mut Engine) {
     run(engine, &mut runner);
     assert_eq!(texels(engine, &runner, ids[1], 0, 0)[0][0], 1.0);
     let (mut smallest, ids) = plan();
-    smallest.memory.policy = Policy::Smallest;
+    smallest.memory.policy = Policy::Share;
     let runner = engine.prepare(smallest, Some(runner)).unwrap();
     assert_eq!(runner.memory_bytes(), 2 * 64 * 64 * 4);
     assert_eq!(runner.texture(ObjectRef::Fixed(ids[0])).unwrap(), runner.texture(ObjectRef::Fixed(ids[2])).unwrap());

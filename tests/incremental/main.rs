@@ -6,6 +6,7 @@
 mod generate;
 #[path = "../engine/harness.rs"]
 mod harness;
+mod peak;
 #[path = "../support/planning.rs"]
 mod planning;
 mod poison;
@@ -31,22 +32,29 @@ fn main() -> ExitCode {
         small::what_was_left_out_runs_later,
         small::everything_runs_if_asked_for,
         small::counts_of_what_was_skipped_stay,
+        peak::a_cut_that_is_left_out_is_caught,
+        peak::memory_that_is_given_back_too_early_is_caught,
+        peak::commands_of_others_are_not_cut,
         shipped::each_has_its_cases,
         shipped::imai2014::orbiting_runs_what_sees_the_camera,
         shipped::imai2014::a_parameter_runs_what_has_it_as_a_cause,
         shipped::imai2014::pictures_equal_those_of_full_runs,
         shipped::imai2014::shared_memory_holds_nothing_that_is_missed,
+        shipped::imai2014::the_smallest_policy_holds_what_its_plan_says,
         shipped::imai2016::orbiting_runs_what_sees_the_camera,
         shipped::imai2016::a_parameter_runs_what_has_it_as_a_cause,
         shipped::imai2016::pictures_equal_those_of_full_runs,
         shipped::imai2016::shared_memory_holds_nothing_that_is_missed,
+        shipped::imai2016::the_smallest_policy_holds_what_its_plan_says,
         shipped::iwasaki2006::orbiting_runs_what_sees_the_camera,
         shipped::iwasaki2006::a_parameter_runs_what_has_it_as_a_cause,
         shipped::iwasaki2006::pictures_equal_those_of_full_runs,
         shipped::iwasaki2006::shared_memory_holds_nothing_that_is_missed,
+        shipped::iwasaki2006::the_smallest_policy_holds_what_its_plan_says,
         shipped::ripples::orbiting_runs_what_sees_the_camera,
         shipped::ripples::a_parameter_runs_what_has_it_as_a_cause,
         shipped::ripples::pictures_equal_those_of_full_runs,
         shipped::ripples::shared_memory_holds_nothing_that_is_missed,
+        shipped::ripples::the_smallest_policy_holds_what_its_plan_says,
     ])
 }

@@ -1,7 +1,7 @@
 //! Memory that holds nothing of use between what uses it, as clears in the plan.
 
 use meniscus::format::{SampleKind, sample_kind};
-use meniscus::plan::model::{ObjectId, ObjectKind, Origin, Pass, PassKind, Plan, View};
+use meniscus::plan::model::{ObjectId, ObjectKind, Origin, Pass, PassKind, Plan, Policy, View};
 use meniscus::shader::reflect::{Scalar, TextureDimension, Type};
 
 use crate::world::objects;
@@ -9,8 +9,11 @@ use crate::world::objects;
 /// Fills each object that shares memory under any policy with NaN, or what comes closest, before
 /// the first pass that touches it.
 pub fn shared(plan: &mut Plan) {
-    let slots = plan.memory.keep.iter().chain(&plan.memory.smallest).filter(|slot| slot.objects.len() > 1);
-    let mut shared: Vec<ObjectId> = slots.flat_map(|slot| slot.objects.clone()).collect();
+    let slots = Policy::ALL.into_iter().flat_map(|policy| plan.memory.slots(policy));
+    let mut shared: Vec<ObjectId> = slots.filter(|s| s.objects.len() > 1).flat_map(|s| s.objects.clone()).collect();
+    // What is made in the middle of a frame begins with nothing of use.
+    let made = plan.memory.cuts.iter().flat_map(|cut| &cut.makes);
+    shared.extend(made.flat_map(|slot| &plan.memory.smallest[*slot].objects));
     shared.sort_unstable();
     shared.dedup();
     // From behind, so that the places before stay.
@@ -62,6 +65,7 @@ fn insert(plan: &mut Plan, at: usize, id: ObjectId) {
     let unit = plan.passes[at].unit;
     plan.units[unit].passes.push(at);
     plan.units[unit].passes.sort_unstable();
+    plan.memory.cuts.iter_mut().filter(|cut| cut.before > at).for_each(|cut| cut.before += 1);
     for steps in plan.steps.iter_mut().filter(|steps| steps.passes.start >= at) {
         steps.passes = steps.passes.start + 1..steps.passes.end + 1;
     }

@@ -92,7 +92,7 @@ fn apply(world: &mut World<'_>, numbers: &mut Numbers) -> Change {
         }
         Change::Fail => world.fail(),
         Change::Policy => {
-            world.policy = if world.policy == Policy::Keep { Policy::Smallest } else { Policy::Keep };
+            world.policy = Policy::ALL[(world.policy as usize + 1) % 3];
         }
         Change::Poison => world.each(&|engine, runner| runner.poison(engine).unwrap()),
         Change::Reset => world.each(&|engine, runner| runner.reset_state(engine).unwrap()),

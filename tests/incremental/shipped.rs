@@ -6,7 +6,7 @@ use std::path::Path;
 
 use glam::DVec3;
 use meniscus::check;
-use meniscus::diagnostic::{Sources, Style, render_all};
+use meniscus::diagnostic::{Diagnostics, Sources, Style, render_all};
 use meniscus::engine::{Engine, Frame, Policy, Report, Runner, StepInfo};
 use meniscus::files::DiskFiles;
 use meniscus::graph::model::ParamKind;
@@ -14,10 +14,11 @@ use meniscus::graph::value::Value;
 use meniscus::host::params::declared;
 use meniscus::plan::changes::Reason;
 use meniscus::plan::instantiate_stand_in;
-use meniscus::plan::model::{Causes, InputInfo, ObjectId, Origin, Param, Plan, Request};
+use meniscus::plan::model::{Causes, InputInfo, ObjectId, ObjectRef, Origin, Param, Plan, Request};
 use meniscus::program::{self, Program};
 use meniscus::scene::{Camera, Light};
 
+use crate::peak;
 use crate::poison;
 use crate::world::{Numbers, objects, read};
 
@@ -25,19 +26,19 @@ const VIEWPORT: [u32; 2] = [40, 30];
 /// `MENISCUS_STEPS=200` in the environment looks further.
 const STEPS: u32 = 12;
 
-struct Shipped<'e> {
-    engine: &'e mut Engine,
+pub struct Shipped<'e> {
+    pub engine: &'e mut Engine,
     name: String,
     program: Program,
     sources: Sources,
-    request: Request,
+    pub request: Request,
     camera: Camera,
     time: f64,
     steps: u32,
     /// Turns where particles are.
     seed: u64,
-    alter: fn(&mut Plan),
-    policy: Policy,
+    pub alter: fn(&mut Plan),
+    pub policy: Policy,
     skips: Option<Runner>,
     /// Runs everything, to compare with, where a test compares.
     full: Option<Runner>,
@@ -62,7 +63,7 @@ impl<'e> Shipped<'e> {
     }
 
     /// Without the runner that runs everything.
-    fn alone(engine: &'e mut Engine, name: &str, alter: fn(&mut Plan)) -> Self {
+    pub fn alone(engine: &'e mut Engine, name: &str, alter: fn(&mut Plan)) -> Self {
         let mut sources = Sources::new();
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("graphs").join(name);
         let loaded = program::load(&DiskFiles, &mut sources, path.to_str().unwrap(), None);
@@ -91,7 +92,7 @@ impl<'e> Shipped<'e> {
         shipped
     }
 
-    fn plan(&self) -> Plan {
+    pub fn plan(&self) -> Plan {
         instantiate_stand_in(&self.program, &self.request)
             .unwrap_or_else(|d| panic!("{}: {}", self.name, render_all(&d, &self.sources, Style::Plain)))
     }
@@ -108,9 +109,16 @@ impl<'e> Shipped<'e> {
         }
     }
 
+    /// Nothing goes over from the runner before.
+    pub fn start_anew(&mut self) {
+        self.skips = None;
+        self.prepare();
+        self.upload();
+    }
+
     fn prepare_full(&mut self) {
         let (mut plan, before) = (self.plan(), self.full.take());
-        plan.memory.policy = Policy::Smallest;
+        plan.memory.policy = Policy::Keep;
         let prepared = self.engine.prepare(plan, before);
         self.full = Some(prepared.unwrap_or_else(|refused| panic!("{}: {:#?}", self.name, refused.diagnostics)));
         self.full.as_mut().unwrap().run_all(true);
@@ -126,8 +134,13 @@ impl<'e> Shipped<'e> {
         }
     }
 
-    fn skips(&self) -> &Runner {
+    pub fn skips(&self) -> &Runner {
         self.skips.as_ref().unwrap()
+    }
+
+    pub fn read(&mut self, objects: &[ObjectRef]) -> Vec<Vec<u8>> {
+        let runner = self.skips.as_ref().unwrap();
+        objects.iter().map(|object| read(self.engine, runner, *object)).collect()
     }
 
     /// The paths of each unit's passes.
@@ -148,13 +161,17 @@ impl<'e> Shipped<'e> {
     }
 
     fn run(&mut self, all: bool) -> Report {
+        self.try_run(all).unwrap_or_else(|d| panic!("{}: {d:#?}", self.name))
+    }
+
+    pub fn try_run(&mut self, all: bool) -> Result<Report, Diagnostics> {
         let runner = if all { self.full.as_mut() } else { self.skips.as_mut() }.unwrap();
         let (camera, viewport) = (self.camera, self.request.viewport);
         let live = |name: &str, _: Option<&StepInfo>| live(name, &camera, viewport);
         let steps = vec![self.steps; runner.plan().steps.len()];
         let frame = Frame { time: self.time, delta: 1.0 / 60.0, frame: 0, steps: &steps, live: &live, only: None };
-        runner.run(self.engine, &frame).unwrap_or_else(|d| panic!("{}: {d:#?}", self.name));
-        runner.finish(self.engine).unwrap_or_else(|d| panic!("{}: {d:#?}", self.name))
+        runner.run(self.engine, &frame)?;
+        Ok(runner.finish(self.engine)?)
     }
 
     /// The units that run in the next frame of the runner that skips.
@@ -170,7 +187,7 @@ impl<'e> Shipped<'e> {
         (0..plan.units.len()).filter(|u| outside(u) && fits(&plan.units[*u].causes)).collect()
     }
 
-    fn orbit(&mut self, turn: f64) {
+    pub fn orbit(&mut self, turn: f64) {
         let turned = glam::DQuat::from_rotation_y(turn) * (self.camera.eye - self.camera.target);
         self.camera.eye = self.camera.target + turned;
     }
@@ -307,6 +324,11 @@ fn parameters(engine: &mut Engine, name: &str) {
     assert!(turned * 3 >= params.len() * 2, "{name}: {turned} of {} parameters could be turned", params.len());
 }
 
+fn another(policy: Policy, numbers: &mut Numbers) -> Policy {
+    let others: Vec<Policy> = Policy::ALL.into_iter().filter(|other| *other != policy).collect();
+    others[numbers.below(others.len() as u32) as usize]
+}
+
 fn change(shipped: &mut Shipped<'_>, numbers: &mut Numbers) -> String {
     shipped.steps = 0;
     match numbers.below(8) {
@@ -334,7 +356,7 @@ fn change(shipped: &mut Shipped<'_>, numbers: &mut Numbers) -> String {
             "time and steps".into()
         }
         5 => {
-            shipped.policy = if shipped.policy == Policy::Keep { Policy::Smallest } else { Policy::Keep };
+            shipped.policy = another(shipped.policy, numbers);
             shipped.prepare();
             format!("the policy {:?}", shipped.policy)
         }
@@ -391,6 +413,10 @@ macro_rules! each {
 
             pub fn shared_memory_holds_nothing_that_is_missed(engine: &mut Engine) {
                 drive(engine, NAME, poison::shared);
+            }
+
+            pub fn the_smallest_policy_holds_what_its_plan_says(engine: &mut Engine) {
+                peak::holds_what_its_plan_says(engine, NAME);
             }
         })*
     };

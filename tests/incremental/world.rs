@@ -81,7 +81,7 @@ impl<'e> World<'e> {
         let mut altered = plan.clone();
         (self.alter)(&mut altered);
         altered.memory.policy = self.policy;
-        plan.memory.policy = Policy::Smallest;
+        plan.memory.policy = Policy::Share;
         self.skips = Some(prepare(self.engine, altered, self.skips.take()));
         let mut full = prepare(self.engine, plan, self.full.take());
         full.run_all(true);

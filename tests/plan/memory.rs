@@ -1,10 +1,10 @@
-//! Lifetimes, and what shares memory under both policies.
+//! Lifetimes, and what shares memory under each policy.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use meniscus::diagnostic::{Style, render_all};
 use meniscus::plan::memory::{bytes, total};
-use meniscus::plan::model::{Causes, InputInfo, MemoryRequest, ObjectId, Origin, Pass, Plan, Policy, Slot, Why};
+use meniscus::plan::model::{Causes, Cut, InputInfo, MemoryRequest, ObjectId, Origin, Pass, Plan, Policy, Slot, Why};
 
 use crate::planning::{Test, object, objects, pass};
 
@@ -13,21 +13,55 @@ struct Simulation<'a> {
     plan: &'a Plan,
     slot: BTreeMap<ObjectId, usize>,
     holds: BTreeMap<usize, ObjectId>,
+    slots: &'a [Slot],
+    cuts: &'a [Cut],
+    /// Slots that have memory.
+    there: BTreeSet<usize>,
+    /// The most bytes that had memory at once.
+    most: u64,
 }
 
 impl<'a> Simulation<'a> {
-    fn new(plan: &'a Plan, slots: &[Slot]) -> Self {
+    fn new(plan: &'a Plan, policy: Policy) -> Self {
+        let (slots, cuts) = (plan.memory.slots(policy), plan.memory.cuts(policy));
         let of = |(s, slot): (usize, &Slot)| slot.objects.iter().map(move |id| (*id, s)).collect::<Vec<_>>();
         let slot: BTreeMap<ObjectId, usize> = slots.iter().enumerate().flat_map(of).collect();
         let members: usize = slots.iter().map(|slot| slot.objects.len()).sum();
         assert_eq!(members, slot.len(), "an object has two slots");
-        Self { plan, slot, holds: BTreeMap::new() }
+        Self { plan, slot, holds: BTreeMap::new(), slots, cuts, there: BTreeSet::new(), most: 0 }
+    }
+
+    /// Gives back what the next frame does not begin with, and makes what it does.
+    fn begin(&mut self) {
+        let late: BTreeSet<usize> = self.cuts.iter().flat_map(|cut| cut.makes.iter().copied()).collect();
+        self.holds.retain(|slot, _| !late.contains(slot));
+        self.there = (0..self.slots.len()).filter(|slot| !late.contains(slot)).collect();
+        self.count();
+    }
+
+    fn count(&mut self) {
+        self.most = self.most.max(self.there.iter().map(|slot| self.slots[*slot].bytes).sum());
+    }
+
+    fn cut(&mut self, before: usize) {
+        for cut in self.cuts.iter().filter(|cut| cut.before == before) {
+            for slot in &cut.gives {
+                assert!(self.there.remove(slot), "memory that is not there is given back");
+                self.holds.remove(slot);
+            }
+            for slot in &cut.makes {
+                assert!(self.there.insert(*slot), "memory that is there is made");
+            }
+            self.count();
+        }
     }
 
     /// Runs the passes that are chosen, `Steps` twice.
     fn frame(&mut self, runs: &dyn Fn(&Pass) -> bool) {
+        self.begin();
         let mut at = 0;
         while at < self.plan.passes.len() {
+            self.cut(at);
             match self.plan.passes[at].steps {
                 Some(steps) => {
                     let range = self.plan.steps[steps].passes.clone();
@@ -68,6 +102,12 @@ impl<'a> Simulation<'a> {
                     );
                     continue;
                 };
+                assert!(
+                    self.there.contains(slot),
+                    "{} uses {}, which has no memory",
+                    pass.path,
+                    self.plan.objects[id].path
+                );
                 if read && access.read {
                     let found = self.holds.get(slot).map(|id| &self.plan.objects[*id].path);
                     assert_eq!(found, Some(&self.plan.objects[id].path), "{} reads what another wrote", pass.path);
@@ -103,14 +143,17 @@ fn meets(a: &Causes, b: &Causes) -> bool {
         || (a.viewport && b.viewport)
 }
 
-/// Runs the plan on shared memory and asserts that no pass finds another's content: under the
-/// smallest policy with every unit each frame, under the keeping one also with the units alone
+/// Runs the plan on shared memory and asserts that no pass finds another's content, or none: under
+/// the policies that share and cut with every unit each frame, under the keeping one also with the units alone
 /// that one cause makes run.
 pub fn hold(plan: &Plan) {
-    let mut smallest = Simulation::new(plan, &plan.memory.smallest);
-    smallest.frame(&|_| true);
-    smallest.frame(&|_| true);
-    let mut keep = Simulation::new(plan, &plan.memory.keep);
+    for policy in [Policy::Share, Policy::Smallest] {
+        let mut simulation = Simulation::new(plan, policy);
+        simulation.frame(&|_| true);
+        simulation.frame(&|_| true);
+        assert_eq!(simulation.most, plan.memory.of_frame(policy), "{policy:?} holds what the plan says");
+    }
+    let mut keep = Simulation::new(plan, Policy::Keep);
     keep.frame(&|_| true);
     for cause in single_causes(plan) {
         keep.frame(&|pass| meets(&plan.units[pass.unit].causes, &cause));
@@ -127,10 +170,12 @@ pub fn hold(plan: &Plan) {
 /// No plan can hold less than what is live at once, and sharing saves.
 pub fn compare(plan: &Plan) {
     let memory = &plan.memory;
-    let (keep, smallest) = (total(&memory.keep), total(&memory.smallest));
+    let [keep, share, smallest] = Policy::ALL.map(|policy| memory.of_frame(policy));
     assert!(memory.lower_bound <= memory.alike_bound, "{} > {}", memory.lower_bound, memory.alike_bound);
-    assert!(memory.alike_bound <= smallest, "{} > {smallest}", memory.alike_bound);
-    assert!(smallest <= keep, "{smallest} > {keep}");
+    assert!(memory.alike_bound <= share, "{} > {share}", memory.alike_bound);
+    assert!(memory.lower_bound <= smallest, "{} > {smallest}", memory.lower_bound);
+    assert!(smallest <= share, "{smallest} > {share}");
+    assert!(share <= keep, "{share} > {keep}");
     assert!(keep <= memory.unshared, "{keep} > {}", memory.unshared);
 }
 
@@ -154,7 +199,7 @@ fn a_chain_needs_two_pieces_and_its_output() {
     hold(&plan);
     compare(&plan);
     let memory = &plan.memory;
-    assert_eq!((memory.unshared, total(&memory.keep), total(&memory.smallest)), (2000, 1200, 800));
+    assert_eq!((memory.unshared, total(&memory.keep), total(&memory.share)), (2000, 1200, 800));
     assert_eq!((memory.lower_bound, memory.alike_bound), (800, 800));
     let id = |name| object(&plan, name);
     let groups: Vec<_> = memory.keep.iter().map(|slot| slot.objects.clone()).collect();
@@ -165,8 +210,8 @@ fn a_chain_needs_two_pieces_and_its_output() {
 fn overlapping_lives_are_caught() {
     let mut plan = chain();
     let both = vec![object(&plan, "a"), object(&plan, "b")];
-    plan.memory.smallest.retain(|slot| !slot.objects.iter().any(|id| both.contains(id)));
-    plan.memory.smallest.push(Slot { objects: both, bytes: 400 });
+    plan.memory.share.retain(|slot| !slot.objects.iter().any(|id| both.contains(id)));
+    plan.memory.share.push(Slot { objects: both, bytes: 400 });
     let caught = std::panic::catch_unwind(|| hold(&plan));
     assert!(caught.is_err(), "the planted fault was not caught");
 }
@@ -197,8 +242,8 @@ fn keeping_shares_only_between_equal_causes() {
     // `kept` is read by a unit that runs more often than the one that writes it.
     assert!(plan.memory.keep.iter().any(|slot| slot.objects == [id("kept")]));
     assert!(together(&plan.memory.keep, id("gained"), id("p")));
-    assert!(together(&plan.memory.smallest, id("kept"), id("q")));
-    assert_eq!((total(&plan.memory.keep), total(&plan.memory.smallest)), (5 * 256, 3 * 256));
+    assert!(together(&plan.memory.share, id("kept"), id("q")));
+    assert_eq!((total(&plan.memory.keep), total(&plan.memory.share)), (5 * 256, 3 * 256));
 }
 
 #[test]
@@ -224,7 +269,7 @@ fn what_lives_into_steps_lives_to_their_end() {
     hold(&plan);
     compare(&plan);
     let wall = object(&plan, "wall");
-    for slots in [&plan.memory.keep, &plan.memory.smallest] {
+    for slots in [&plan.memory.keep, &plan.memory.share] {
         let (a, b) = (object(&plan, "a"), object(&plan, "b"));
         let with_it = slots.iter().find(|slot| slot.objects.contains(&wall)).unwrap();
         assert!(!with_it.objects.contains(&a) && !with_it.objects.contains(&b), "{slots:?}");
@@ -255,7 +300,7 @@ fn what_steps_make_for_others_has_memory_of_its_own_while_things_are_kept() {
     compare(&plan);
     let sum = object(&plan, "sum");
     assert!(plan.memory.keep.iter().any(|slot| slot.objects == [sum]), "{:?}", plan.memory.keep);
-    assert!(plan.memory.smallest.iter().any(|slot| slot.objects == [sum, object(&plan, "late")]));
+    assert!(plan.memory.share.iter().any(|slot| slot.objects == [sum, object(&plan, "late")]));
 }
 
 #[test]
@@ -285,9 +330,9 @@ fn textures_share_only_with_their_like_and_a_slot_is_as_large_as_its_largest() {
     hold(&plan);
     compare(&plan);
     let id = |name| object(&plan, name);
-    assert!(plan.memory.smallest.contains(&Slot { objects: vec![id("a"), id("c")], bytes: 8 * 8 * 8 }));
-    assert!(plan.memory.smallest.contains(&Slot { objects: vec![id("b")], bytes: 8 * 8 * 4 }));
-    assert!(plan.memory.smallest.contains(&Slot { objects: vec![id("small"), id("large")], bytes: 4000 }));
+    assert!(plan.memory.share.contains(&Slot { objects: vec![id("a"), id("c")], bytes: 8 * 8 * 8 }));
+    assert!(plan.memory.share.contains(&Slot { objects: vec![id("b")], bytes: 8 * 8 * 4 }));
+    assert!(plan.memory.share.contains(&Slot { objects: vec![id("small"), id("large")], bytes: 4000 }));
     assert_eq!(plan.memory.unshared, plan.objects.iter().map(|o| bytes(&o.kind)).sum::<u64>());
     assert_eq!(plan.objects[id("last")].lifetime, Some((pass(&plan, "last"), pass(&plan, "last"))));
 }
@@ -317,15 +362,15 @@ fn the_policy_goes_by_what_changes_and_by_the_budget() {
     let policy = |request: MemoryRequest| two_times(request).map(|plan| (plan.memory.policy, plan.memory.why));
     assert_eq!(policy(MemoryRequest::default()), Ok((Policy::Keep, Why::Still)));
     let moving = |name: &str| MemoryRequest { moving: [name.to_owned()].into(), ..MemoryRequest::default() };
-    assert_eq!(policy(moving("given")), Ok((Policy::Smallest, Why::Moving { passes: 3, of: 4 })));
+    assert_eq!(policy(moving("given")), Ok((Policy::Share, Why::Moving { passes: 3, of: 4 })));
     assert_eq!(policy(moving("nothing")), Ok((Policy::Keep, Why::Moving { passes: 0, of: 4 })));
     let asked = MemoryRequest { policy: Some(Policy::Keep), ..moving("given") };
     assert_eq!(policy(asked), Ok((Policy::Keep, Why::Asked)));
     // Keeping holds 16,000 bytes of the frame and 4,000 of the input.
     let within = |budget| MemoryRequest { budget: Some(budget), ..MemoryRequest::default() };
     assert_eq!(policy(within(20_000)), Ok((Policy::Keep, Why::Still)));
-    assert_eq!(policy(within(19_999)), Ok((Policy::Smallest, Why::Budget { keeping: 20_000 })));
-    assert_eq!(policy(within(16_000)), Ok((Policy::Smallest, Why::Budget { keeping: 20_000 })));
+    assert_eq!(policy(within(19_999)), Ok((Policy::Share, Why::Budget { keeping: 20_000 })));
+    assert_eq!(policy(within(16_000)), Ok((Policy::Share, Why::Budget { keeping: 20_000 })));
     assert!(two_times(within(15_999)).unwrap_err().contains("memory-budget"));
     assert!(two_times(MemoryRequest { elsewhere: 1, ..within(16_000) }).is_err(), "what others take counts");
 }

@@ -105,7 +105,14 @@ impl Runner {
     /// Which passes the device refuses, found by encoding each on its own.
     pub(in crate::engine) fn blame(&mut self, gpu: &Gpu) -> Option<Diagnostics> {
         let mut found = Diagnostics::new();
+        if self.begin_parts(gpu, true).is_err() {
+            return None;
+        }
         for index in 0..self.plan.passes.len() {
+            // Nothing is handed over: only memory changes.
+            if self.cut(gpu, &mut Recorder::new(gpu), index).is_err() {
+                return None;
+            }
             let refused = match self.ensure_variant(gpu, index) {
                 Err(diagnostic) => Some(diagnostic),
                 Ok(key) => {

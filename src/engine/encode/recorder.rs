@@ -5,6 +5,7 @@
 use std::sync::LazyLock;
 use std::time::Instant;
 
+use crate::diagnostic::Diagnostic;
 use crate::engine::gpu::Gpu;
 
 /// Passes to a submission, so that a thousand steps do not make one huge one.
@@ -100,12 +101,28 @@ impl<'a> Recorder<'a> {
         if self.passes < PASSES_TO_A_SUBMISSION {
             return;
         }
+        self.submit(gpu);
+    }
+
+    /// Submits what is its own, and goes on with new commands.
+    pub fn submit(&mut self, gpu: &Gpu) {
         self.compute = None;
         if let Commands::Own(encoder) = &mut self.commands {
             let full = std::mem::replace(encoder, own(gpu));
             self.begun.submit(gpu, full);
             self.passes = 0;
         }
+    }
+
+    /// Waits until the device is done with all that was submitted; that counts as submitting.
+    ///
+    /// # Errors
+    /// If it does not end.
+    pub fn wait(&mut self, gpu: &Gpu) -> Result<(), Diagnostic> {
+        let began = Instant::now();
+        let waited = gpu.drain();
+        self.begun.submit_ms += began.elapsed().as_secs_f64() * 1e3;
+        waited
     }
 
     /// The commands, if they are its own.

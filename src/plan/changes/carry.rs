@@ -33,8 +33,8 @@ impl Changes {
             if then.iter().zip(&unit.passes).any(|(a, b)| old.prints[*a] != self.prints[*b]) {
                 self.pending.marks[u].add(&Reason::Pass);
             }
-            // Under the smallest policy what is looked at may share too, and all run if one does.
-            let counts = |id: ObjectId| !shares(id) || plan.memory.policy == Policy::Smallest;
+            // Where things are not kept what is looked at may share too, and all run if one does.
+            let counts = |id: ObjectId| !shares(id) || plan.memory.policy != Policy::Keep;
             let lost = unit
                 .passes
                 .iter()

@@ -2,7 +2,7 @@
 
 use super::some;
 use crate::plan::memory::class;
-use crate::plan::model::{Apart, ObjectId, ObjectRef, Origin, Plan, Policy};
+use crate::plan::model::{Apart, Cut, ObjectId, ObjectRef, Origin, Plan, Policy};
 use crate::plan::print::causes;
 
 /// Every object that a reference can stand for.
@@ -20,9 +20,9 @@ pub(super) fn explain(plan: &Plan, id: ObjectId) -> Vec<String> {
         (Origin::Frame, Some((first, last))) => {
             let mut said =
                 vec![format!("lives from pass {first} ({}) to {last} ({})", path(plan, first), path(plan, last))];
-            said.extend([Policy::Keep, Policy::Smallest].map(|policy| {
+            said.extend(Policy::ALL.map(|policy| {
                 let now = if policy == plan.memory.policy { " (which holds)" } else { "" };
-                format!("under \"{}\"{now}: {}", policy.name(), under(plan, id, policy))
+                format!("under \"{}\"{now}: {}{}", policy.name(), under(plan, id, policy), between(plan, id, policy))
             }));
             return said;
         }
@@ -51,6 +51,18 @@ fn under(plan: &Plan, id: ObjectId, policy: Policy) -> String {
         Some(apart) => format!("its own: {}", why_apart(plan, *apart)),
         None => format!("its own: {}", why_alone(plan, id, policy)),
     }
+}
+
+/// At which cuts of the frame its memory is made and given back.
+fn between(plan: &Plan, id: ObjectId, policy: Policy) -> String {
+    let cuts = plan.memory.cuts(policy);
+    let Some(slot) = plan.memory.slots(policy).iter().position(|slot| slot.objects.contains(&id)) else {
+        return String::new();
+    };
+    let cut = |cut: &Cut| format!("at the cut before {} ({})", cut.before, path(plan, cut.before));
+    let made = cuts.iter().find(|cut| cut.makes.contains(&slot)).map(|at| format!("; made {}", cut(at)));
+    let given = cuts.iter().find(|cut| cut.gives.contains(&slot)).map(|at| format!("; given back {}", cut(at)));
+    made.into_iter().chain(given).collect()
 }
 
 /// `name (3 to 7)`.
@@ -91,7 +103,7 @@ fn why_alone(plan: &Plan, id: ObjectId, policy: Policy) -> String {
         return format!("there are no other {what}");
     }
     let may: Vec<ObjectId> =
-        alike.into_iter().filter(|id| policy == Policy::Smallest || !plan.memory.apart.contains_key(id)).collect();
+        alike.into_iter().filter(|id| policy != Policy::Keep || !plan.memory.apart.contains_key(id)).collect();
     if may.is_empty() {
         return format!("all other {what} have memory of their own");
     }
@@ -102,6 +114,7 @@ fn why_alone(plan: &Plan, id: ObjectId, policy: Policy) -> String {
     let living: Vec<String> = may.iter().filter(|other| meets(other)).map(|other| lived(plan, *other)).collect();
     let living: Vec<&str> = living.iter().map(String::as_str).collect();
     match living.as_slice() {
+        [] if !plan.memory.cuts(policy).is_empty() => format!("the other {what} lie better elsewhere or behind a cut"),
         [] => format!("the other {what} lie better elsewhere"),
         living if living.len() == may.len() => format!("all that could share live at the same time: {}", some(living)),
         living => format!("{} live at the same time, and the others lie better elsewhere", some(living)),

@@ -12,13 +12,19 @@ pub enum Policy {
     #[default]
     Keep,
     /// Every unit runs in each frame in which any does; lifetimes alone decide.
+    Share,
+    /// The same, and the frame is cut where that helps: memory that is over is given back in between.
     Smallest,
 }
 
 impl Policy {
+    /// From the one that holds the most on.
+    pub const ALL: [Policy; 3] = [Policy::Keep, Policy::Share, Policy::Smallest];
+
     pub fn name(self) -> &'static str {
         match self {
             Policy::Keep => "keep",
+            Policy::Share => "share",
             Policy::Smallest => "smallest",
         }
     }
@@ -38,7 +44,7 @@ pub struct MemoryRequest {
     pub moving: BTreeSet<String>,
 }
 
-/// Which objects share memory, under both policies of rule 38, and which policy holds.
+/// Which objects share memory, under each policy of rule 38, and which policy holds.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct Memory {
     pub policy: Policy,
@@ -47,7 +53,13 @@ pub struct Memory {
     /// kept.
     pub keep: Vec<Slot>,
     /// The same when every unit runs each frame.
+    pub share: Vec<Slot>,
+    /// The same when the frame may be cut besides.
     pub smallest: Vec<Slot>,
+    /// Where the frame is cut under the smallest policy, in order.
+    pub cuts: Vec<Cut>,
+    /// Bytes of the frame that are held in each of the parts that cuts make of it.
+    pub parts: Vec<u64>,
     /// Objects that share with nobody while things are kept.
     pub apart: BTreeMap<ObjectId, Apart>,
     /// Bytes of all objects of the frame, each on its own.
@@ -57,7 +69,7 @@ pub struct Memory {
     /// The first pass at which that set is live.
     pub largest_at: usize,
     /// Bytes of the largest sets of objects that could lie in one piece of memory, summed: textures
-    /// of one description, and buffers. wgpu lets nobody hold less.
+    /// of one description, and buffers. wgpu lets no frame that is not cut hold less.
     pub alike_bound: u64,
     /// Bytes of inputs and state, which share nothing.
     pub outside: u64,
@@ -68,6 +80,19 @@ pub struct Memory {
 pub struct Slot {
     pub objects: Vec<ObjectId>,
     pub bytes: u64,
+}
+
+/// A place in the frame at which memory that is over is given back, and other memory made. What no
+/// cut makes is there when the frame begins; what no cut gives back is there when it ends. What is
+/// made and not looked at is given back then, the rest when the next frame begins.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Cut {
+    /// Index into [`super::Plan::passes`].
+    pub before: usize,
+    /// Indices into [`Memory::smallest`], of what is over.
+    pub gives: Vec<usize>,
+    /// Of what begins between here and the next cut.
+    pub makes: Vec<usize>,
 }
 
 /// Why an object of the frame shares with nobody while things are kept.
@@ -99,13 +124,26 @@ impl Memory {
     pub fn slots(&self, policy: Policy) -> &[Slot] {
         match policy {
             Policy::Keep => &self.keep,
+            Policy::Share => &self.share,
             Policy::Smallest => &self.smallest,
         }
     }
 
-    /// Bytes of textures and buffers that are held under a policy, with inputs and state.
+    /// The cuts of the frame under a policy.
+    pub fn cuts(&self, policy: Policy) -> &[Cut] {
+        if policy == Policy::Smallest { &self.cuts } else { &[] }
+    }
+
+    /// Bytes of the frame's textures and buffers that are held at once under a policy, at the most.
+    pub fn of_frame(&self, policy: Policy) -> u64 {
+        let all = || self.slots(policy).iter().map(|slot| slot.bytes).sum();
+        let most = self.parts.iter().copied().max().filter(|_| !self.cuts(policy).is_empty());
+        most.unwrap_or_else(all)
+    }
+
+    /// The same with inputs and state.
     pub fn held(&self, policy: Policy) -> u64 {
-        self.outside + self.slots(policy).iter().map(|slot| slot.bytes).sum::<u64>()
+        self.outside + self.of_frame(policy)
     }
 }
 

@@ -80,7 +80,12 @@ fn value(plan: &Plan) -> Json {
             "budget_bytes": plan.memory.budget,
             "inputs_and_state_bytes": plan.memory.outside,
             "keep": slots(&plan.memory.keep),
+            "share": slots(&plan.memory.share),
             "smallest": slots(&plan.memory.smallest),
+            "cuts": plan.memory.cuts.iter()
+                .map(|cut| json!({ "before": cut.before, "gives": cut.gives, "makes": cut.makes }))
+                .collect::<Vec<_>>(),
+            "parts_bytes": plan.memory.parts,
             "unshared_bytes": plan.memory.unshared,
             "alike_live_sets_bytes": plan.memory.alike_bound,
             "largest_live_set_bytes": plan.memory.lower_bound,
@@ -349,6 +354,7 @@ fn resource(plan: &Plan, id: usize, object: &Object) -> Json {
         "origin": origin,
         "lifetime": object.lifetime.map(|(first, last)| [first, last]),
         "keep_slot": slot(&plan.memory.keep),
+        "share_slot": slot(&plan.memory.share),
         "smallest_slot": slot(&plan.memory.smallest),
     })
 }

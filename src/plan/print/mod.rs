@@ -4,6 +4,7 @@ mod describe;
 mod dot;
 mod explained;
 mod json;
+mod memory;
 mod rows;
 mod svg;
 mod text;

@@ -7,8 +7,8 @@ use std::fmt::Write as _;
 
 use super::describe;
 use super::rows::{self, Row, rows};
-use crate::plan::memory::{self, total};
-use crate::plan::model::{ObjectId, Origin, Plan};
+use crate::plan::memory;
+use crate::plan::model::{ObjectId, Origin, Plan, Policy};
 
 const COLUMN: usize = 18;
 const ROW: usize = 20;
@@ -141,8 +141,8 @@ fn summary(plan: &Plan) -> String {
         "{} passes in {} units; memory: {} keeping what skipping needs, {} at the smallest, {} without sharing",
         plan.passes.len(),
         plan.units.len(),
-        describe::bytes(total(&memory.keep)),
-        describe::bytes(total(&memory.smallest)),
+        describe::bytes(memory.of_frame(Policy::Keep)),
+        describe::bytes(memory.of_frame(Policy::Smallest)),
         describe::bytes(memory.unshared),
     )
 }

@@ -3,12 +3,11 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 
-use super::describe;
 use super::rows::{self, Row, rows, shared};
+use super::{describe, memory};
 use crate::graph::value::Value;
-use crate::plan::memory::total;
 use crate::plan::merge::{Shared, SharedKind};
-use crate::plan::model::{Causes, ObjectId, Origin, Plan, Policy};
+use crate::plan::model::{Causes, ObjectId, Origin, Plan};
 use crate::plan::needs::feature_names;
 
 /// Names longer than this push what follows out of its column.
@@ -25,7 +24,7 @@ pub fn text(plan: &Plan) -> String {
     steps(plan, &mut out);
     resources(plan, &mut out);
     stats(plan, &mut out);
-    memory(plan, &mut out);
+    memory::memory(plan, &mut out);
     needs(plan, &mut out);
     params(plan, &mut out);
     files(plan, &mut out);
@@ -286,39 +285,6 @@ fn stats(plan: &Plan, out: &mut String) {
         _ = writeln!(out, "  {:width$}  {}{missing}", stat.path, stat.text);
     }
     out.push('\n');
-}
-
-fn memory(plan: &Plan, out: &mut String) {
-    let memory = &plan.memory;
-    _ = writeln!(out, "memory of the frame:");
-    _ = writeln!(out, "  {:>10}  without sharing", describe::bytes(memory.unshared));
-    for (policy, what) in
-        [(Policy::Keep, "what skipping needs is kept"), (Policy::Smallest, "every unit runs each frame")]
-    {
-        let (slots, name) = (memory.slots(policy), policy.name());
-        _ = writeln!(out, "  {:>10}  under the policy \"{name}\": {what}", describe::bytes(total(slots)));
-        for (n, slot) in slots.iter().filter(|s| s.objects.len() > 1).enumerate() {
-            let names: Vec<&str> = slot.objects.iter().map(|id| plan.objects[*id].path.as_str()).collect();
-            let label = if policy == memory.policy { format!("m{n}: ") } else { String::new() };
-            _ = writeln!(out, "  {:>10}    {label}{}", describe::bytes(slot.bytes), names.join(", "));
-        }
-    }
-    let alike = describe::bytes(memory.alike_bound);
-    _ = writeln!(
-        out,
-        "  {alike:>10}  in the largest live sets of what is described alike: wgpu lets no plan hold less"
-    );
-    let at = plan
-        .passes
-        .get(memory.largest_at)
-        .map_or(String::new(), |p| format!(", at {} ({})", memory.largest_at, p.path));
-    let least = describe::bytes(memory.lower_bound);
-    _ = writeln!(out, "  {least:>10}  in the largest live set{at}: no plan can hold less");
-    let budget = memory.budget.map_or(String::new(), |budget| format!(", of a budget of {}", describe::bytes(budget)));
-    let (name, why) = (memory.policy.name(), &memory.why);
-    let [held, outside] = [memory.held(memory.policy), memory.outside].map(describe::bytes);
-    _ = writeln!(out, "  the policy is \"{name}\": {why}");
-    _ = writeln!(out, "  held: {held}{budget}, with {outside} of inputs and state\n");
 }
 
 fn needs(plan: &Plan, out: &mut String) {
