@@ -30,7 +30,7 @@ pub enum Command {
     Plan(PlanArgs),
     /// Measure each pass on the GPU, encoding on the CPU, and memory
     Bench(BenchArgs),
-    /// Adapters, features and limits, and what each shipped graph needs
+    /// Adapters, features and limits, and what each shipped graph needs; with files, what they hold
     Info(InfoArgs),
     /// A diagnostic, at length
     Explain(ExplainArgs),
@@ -273,6 +273,9 @@ pub enum BenchFormat {
 
 #[derive(Args, Clone, Debug)]
 pub struct InfoArgs {
+    /// Particle files, sequences of them (dd_####.bgeo), mesh files, pictures, scenes and graphs: what they hold
+    #[arg(value_name = "FILE")]
+    pub files: Vec<PathBuf>,
     #[arg(long, value_enum, default_value_t = CheckFormat::Text)]
     pub format: CheckFormat,
 }

@@ -68,8 +68,12 @@ fn of_graph(args: &PlanArgs, sources: &mut Sources) -> Result<(Plan, Diagnostics
     let loaded = program::load(&DiskFiles, sources, &name(&args.graph), None);
     let mut found = loaded.diagnostics;
     let Some(program) = loaded.program else { return Err(found) };
-    let typed =
-        |(path, value): &(String, String)| Given { path: path.clone(), raw: Raw::Text(value.clone()), span: None };
+    let typed = |(path, value): &(String, String)| Given {
+        path: path.clone(),
+        raw: Raw::Text(value.clone()),
+        span: None,
+        of_another_graph: false,
+    };
     let given: Vec<Given> = args.set.iter().map(typed).collect();
     let mut request = check::stand_in(&program);
     request.params = resolve(&given, &program, &mut found);

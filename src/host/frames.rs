@@ -37,8 +37,8 @@ pub(super) fn locate(
     };
     let folders = files::candidates(Kind::Asset, pattern.folder(), beside);
     let found = folders.iter().find_map(|folder| {
-        let frames: BTreeSet<u64> = files.names(folder).iter().filter_map(|name| pattern.frame(name)).collect();
-        Some((folder, frames)).filter(|(_, frames)| !frames.is_empty())
+        Some((folder, numbered_files(files, &pattern.in_folder(folder.clone()))))
+            .filter(|(_, frames)| !frames.is_empty())
     });
     let Some((folder, there)) = found else {
         let looked: Vec<String> = folders.iter().map(|f| format!("`{}`", shown(f))).collect();
@@ -57,6 +57,11 @@ pub(super) fn locate(
     let path = pattern.path(frame);
     let held = (frame != wanted).then(|| held(own, wanted, frame));
     Ok(Located { path, frames: Frames { pattern, frames, rate: sequence.rate }, held })
+}
+
+/// The numbers of a pattern's files, in its own folder.
+pub(crate) fn numbered_files(files: &dyn Files, pattern: &Pattern) -> BTreeSet<u64> {
+    files.names(pattern.folder()).iter().filter_map(|name| pattern.frame(name)).collect()
 }
 
 /// The frame itself or the nearest one before it that is there.

@@ -256,18 +256,33 @@ impl Loader<'_> {
             path: item.name.value.clone(),
             raw: Raw::Value(item.value.clone()),
             span: Some(item.name.span),
+            of_another_graph: false,
         };
-        let mut own: Vec<Given> = scene.params.iter().map(in_scene).collect();
+        let is_its_own =
+            self.job.graph.is_none() || scene.graph.as_ref().map(|name| &name.value) == self.job.graph.as_ref();
+        let of_another_graph = !is_its_own && scene.graph.is_some();
+        let for_graph = |item| Given { of_another_graph, ..in_scene(item) };
+        let mut own: Vec<Given> = scene.params.iter().map(for_graph).collect();
         let mut shared: Vec<Given> = scene.present.iter().map(in_scene).collect();
         for (name, value) in &self.job.set {
-            let typed = |path: &str| Given { path: path.to_owned(), raw: Raw::Text(value.clone()), span: None };
+            let typed = |path: &str| Given {
+                path: path.to_owned(),
+                raw: Raw::Text(value.clone()),
+                span: None,
+                of_another_graph: false,
+            };
             match name.strip_prefix(PRESENT_PREFIX) {
                 Some(path) => shared.push(typed(path)),
                 None => own.push(typed(name)),
             }
         }
         if self.job.transparent {
-            shared.push(Given { path: "transparent".into(), raw: Raw::Value(Value::Bool(true)), span: None });
+            shared.push(Given {
+                path: "transparent".into(),
+                raw: Raw::Value(Value::Bool(true)),
+                span: None,
+                of_another_graph: false,
+            });
         }
         let own = params::resolve(&own, program, &mut self.diagnostics);
         (own, params::resolve(&shared, present, &mut self.diagnostics))

@@ -15,6 +15,8 @@ pub struct Given {
     pub raw: Raw,
     /// Where a scene says it; absent for the command line.
     pub span: Option<Span>,
+    /// A scene says it for its own graph, in whose place another is used.
+    pub of_another_graph: bool,
 }
 
 #[derive(Clone, Debug, PartialEq)]
@@ -62,15 +64,27 @@ pub fn resolve(given: &[Given], program: &Program, diagnostics: &mut Diagnostics
     let mut values = BTreeMap::new();
     for given in given {
         let Some(param) = declared.get(&given.path) else {
-            diagnostics.push(unknown(given, program, declared.keys().map(String::as_str)));
+            let unknown = unknown(given, program, declared.keys().map(String::as_str));
+            diagnostics.push(if given.of_another_graph { left_out(unknown) } else { unknown });
             continue;
         };
         match value_for(&given.raw, param) {
             Ok(value) => _ = values.insert(given.path.clone(), value),
-            Err(why) => diagnostics.push(unfit(given, param, &why)),
+            Err(why) => {
+                let unfit = unfit(given, param, &why);
+                diagnostics.push(if given.of_another_graph { left_out(unfit) } else { unfit });
+            }
         }
     }
     values
+}
+
+/// What a scene says for its own graph does not bind one that is used in its place.
+fn left_out(error: Diagnostic) -> Diagnostic {
+    let message = format!("{}: the scene's value is left out", error.message);
+    let warning = Diagnostic::warning(error.id, message);
+    Diagnostic { labels: error.labels, ..warning }
+        .hint("the scene says it for its own graph, and `--graph` names another")
 }
 
 fn unknown<'a>(given: &Given, program: &Program, known: impl Iterator<Item = &'a str> + Clone) -> Diagnostic {

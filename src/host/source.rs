@@ -120,7 +120,7 @@ pub(super) fn default_scene(sources: &mut Sources, diagnostics: &mut Diagnostics
 ///
 /// # Errors
 /// If it is missing, a folder, or unreadable.
-pub(super) fn named(files: &dyn Files, path: &Path) -> Result<Arc<[u8]>, Diagnostic> {
+pub(crate) fn named(files: &dyn Files, path: &Path) -> Result<Arc<[u8]>, Diagnostic> {
     if path.is_dir() {
         return Err(Diagnostic::error(Code::FILE_UNREADABLE, format!("`{}` is a folder", path.display()))
             .hint("name a file in it"));

@@ -52,3 +52,77 @@ fn files_of_other_programs_are_turned_and_scaled() {
     refused(&project, &["render", "m.csv", "-o", "a.png", "--scale", "-1"], 2, &["a scale is finite and above 0"]);
     refused(&project, &["render", "m.csv", "-o", "a.png", "--up", "x"], 2, &["possible values: y, z"]);
 }
+
+#[test]
+fn info_tells_what_files_hold() {
+    let project = Project::new();
+    project.write("a_1.csv", "x,y,z,mass\n0,0,0,1.5\n1,2,-3,1.5\nnan,0,0,7\n");
+    project.write("a_3.csv", "x,y,z\n0,0,0\n");
+    project.write("box.obj", "mtllib box.mtl\nv 0 0 0\nv 1 0 0\nv 0 2 0\nusemtl red\nf 1 2 3\n");
+    project.write("box.mtl", "newmtl red\nKd 1 0 0\n");
+    let said = |files: &[&str]| good(project.run(&[&["info"], files].concat())).stdout;
+    let text = said(&["a_#.csv", "box.obj"]);
+    let expected = "a_#.csv: 2 files, frames 1 to 3\n  missing: 2\na_1.csv: particles\n  count: 2\n\
+        \u{20}\u{20}radius: about 1.8708 m, estimated from the spacing\n\
+        \u{20}\u{20}box: 0 0 -3 to 1 2 0 m, if a unit is a metre and y is up\n  attributes:\n\
+        \u{20}\u{20}\u{20}\u{20}position  3 x f64  -3 to 2\n    mass      1 x f64  all 1.5\n\
+        \u{20}\u{20}note: dropped 1 of 3 particles whose position is not finite\n\n\
+        box.obj: mesh\n  triangles: 1, with 3 vertices, in one node\n\
+        \u{20}\u{20}box: 0 0 0 to 1 2 0 m, if a unit is a metre and y is up\n  material: `red`, no pictures\n";
+    assert_eq!(text, expected);
+    for (file, words) in [
+        ("scenes/dots.ron", ["scenes/dots.ron: scene", "particles  particles  assets/dots.csv", "size = 1.5"]),
+        ("graphs/dots.ron", ["graphs/dots.ron: graph", "size   Float", "outputs: picture"]),
+        ("imai2016.ron", ["imai2016.ron: graph", "environment  Texture, optional", "shapes.strays_below"]),
+    ] {
+        let text = said(&[file]);
+        assert!(words.iter().all(|word| text.contains(word)), "{text}");
+    }
+    let json: serde_json::Value = serde_json::from_str(&said(&["--format", "json", "a_3.csv", "box.obj"])).unwrap();
+    assert_eq!((&json[0]["particles"]["count"], &json[1]["mesh"]["materials"][0]["name"]), (&1.into(), &"red".into()));
+    project.write("b.vtk", "# vtk DataFile Version 4.2\nt\nASCII\nDATASET POLYDATA\nPOINTS many float\n");
+    for (file, words) in [
+        ("note.txt", "`note.txt` is no scene, graph, particle file, mesh or picture"),
+        ("b.vtk", "`b.vtk`: line 5, column 8: expected the number of points, found `many`"),
+        ("gone.glb", "there is no file `gone.glb`"),
+        ("c_##.vtk", "no file is named `c_##.vtk` with a number in place of the `#`"),
+    ] {
+        refused(&project, &["info", file], 2, &[words]);
+    }
+}
+
+#[test]
+fn another_graph_leaves_out_what_the_scene_says_for_its_own() {
+    if !has_adapter() {
+        return;
+    }
+    let project = Project::new();
+    project.write(
+        "graphs/other.ron",
+        project.text("graphs/dots.ron").replace("\"size\"", "\"extent\"").replace("size *", "extent *"),
+    );
+    let render = ["render", "scenes/dots.ron", "-o", "a.png", "--size", "80x60", "--graph"];
+    let run = good(project.run(&[&render[..], &["graphs/other.ron"]].concat()));
+    for words in [
+        "warning[unknown-name]: there is no parameter `size` in `graphs/other.ron`: the scene's value is left out",
+        "scenes/dots.ron:16",
+        "the scene says it for its own graph, and `--graph` names another",
+    ] {
+        assert!(run.stderr.contains(words), "{}", run.stderr);
+    }
+    picture(&project, "a.png");
+    // For its own graph it stays a mistake, and so does what is typed.
+    project.edit("scenes/dots.ron", "\"size\": 1.5", "\"siz\": 1.5");
+    let graph = project
+        .text("scenes/dots.ron")
+        .lines()
+        .find_map(|line| line.trim().strip_prefix("graph: \"")?.strip_suffix("\",").map(str::to_owned));
+    refused(&project, &["render", "scenes/dots.ron", "-o", "b.png"], 1, &["there is no parameter `siz`"]);
+    refused(&project, &[&render[..], &[&graph.unwrap()]].concat(), 1, &["there is no parameter `siz`"]);
+    refused(
+        &project,
+        &[&render[..], &["graphs/other.ron", "--set", "siz=1"]].concat(),
+        2,
+        &["there is no parameter `siz`"],
+    );
+}

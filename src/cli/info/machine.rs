@@ -1,4 +1,4 @@
-//! `meniscus info`: what this machine offers, and what each shipped graph needs of it.
+//! What this machine offers, and what each shipped graph needs of it.
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -6,9 +6,9 @@ use std::path::Path;
 use serde_json::{Value as Json, json};
 use wgpu_types::{Features, Limits};
 
-use super::args::{CheckFormat, InfoArgs};
-use super::report::{Exit, print, report};
 use crate::check::{self, Device};
+use crate::cli::args::{CheckFormat, InfoArgs};
+use crate::cli::report::{Exit, print, report};
 use crate::diagnostic::{Code, Diagnostic, Sources};
 use crate::engine::{AdapterSummary, Gpu, GpuOptions};
 use crate::files::{self, DiskFiles, LIBRARY};
