@@ -10,6 +10,7 @@ mod everything;
 mod harness;
 mod lifecycle;
 mod meshes;
+mod samples;
 mod shipped;
 mod statistics;
 mod steps;
@@ -93,6 +94,8 @@ fn main() -> ExitCode {
         distance::of_a_box,
         distance::of_a_sphere,
         distance::of_several_bodies,
+        samples::samples_look_as_their_files_say,
+        samples::the_animated_sample_moves_as_its_file_says,
         everything::files_beside_the_repository_render,
         statistics::statistics_are_what_buffers_hold,
         statistics::what_only_statistics_need_runs_when_they_are_asked_for,
