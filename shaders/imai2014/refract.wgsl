@@ -46,10 +46,12 @@ fn seen_through(start: vec3f, view: vec3f, pixel: vec2f) -> vec3f {
     var rays: Rays;
     add_ray(&rays, start, reflect(view, outside), vec3f(into.reflectance));
     let back = leave_shell(layers, BODY, start, into.direction, params.reach_m, params.secant_steps);
-    let p = start + back.t * into.direction;
+    let within = stands_within(start, into.direction, back.t, params.march_steps);
+    let length = select(back.t, within.before, within.found);
+    let p = start + length * into.direction;
     var direction = into.direction;
-    var share = (1.0 - into.reflectance) * transmitted(params.absorption, back.t);
-    if params.refractions > 1u {
+    var share = (1.0 - into.reflectance) * transmitted(params.absorption, length);
+    if params.refractions > 1u && !within.found {
         let wet = wetting(p, back.pixel, params.contact_m);
         add_ray(&rays, p, direction, share * wet);
         share *= 1.0 - wet;

@@ -66,8 +66,15 @@ fn seen_through(start: vec3f, view: vec3f, first: Crossing) -> vec3f {
         if !in_body {
             at = leave_sphere(at, p, direction, normal, params.shapes_splash_radius);
         }
+        share *= 1.0 - into.reflectance;
+        let within = stands_within(p, direction, at.t, params.march_steps);
+        if within.found {
+            p += within.before * direction;
+            share *= transmitted(params.absorption, within.before);
+            break;
+        }
         p += at.t * direction;
-        share *= (1.0 - into.reflectance) * transmitted(params.absorption, at.t);
+        share *= transmitted(params.absorption, at.t);
         if entered == params.refractions {
             break;
         }

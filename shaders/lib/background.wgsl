@@ -54,10 +54,21 @@ fn wetting(p: vec3f, pixel: vec2f, contact: f32) -> f32 {
     return 1.0 - smoothstep(0.5 * contact, contact, dry_distance(p, pixel));
 }
 
-/// Marches in growing steps until the ray is behind the dry scene, then halves the last step. All in eye space.
-fn background(p: vec3f, direction: vec3f, reach: f32, steps: u32) -> vec3f {
+/// Where a ray meets the dry scene, in metres: the last place before it, and one behind it. `hidden` if it ends behind
+/// something that it did not meet: then `behind` is where it comes nearest to what is seen there.
+struct Meeting {
+    found: bool,
+    hidden: bool,
+    before: f32,
+    behind: f32,
+}
+
+/// Marches in growing steps until the ray is behind the dry scene, and halves the step. All in eye space.
+fn meet_dry(p: vec3f, direction: vec3f, reach: f32, steps: u32) -> Meeting {
     var ends = vec2f(0.0);
-    var found = false;
+    var was_behind = false;
+    var least = 1.0e30;
+    var meeting = Meeting(false, false, 0.0, 0.0);
     for (var k = 0u; k <= steps; k++) {
         let share = f32(k) / f32(steps);
         let t = reach * share * share;
@@ -66,28 +77,57 @@ fn background(p: vec3f, direction: vec3f, reach: f32, steps: u32) -> vec3f {
         if q.z > -camera.near || !on_screen(pixel) {
             break;
         }
-        let z = textureLoad(dry_z, vec2i(pixel), 0).x;
         ends = vec2f(ends.y, t);
-        if z != 0.0 && q.z <= z {
-            found = true;
-            break;
+        let z = textureLoad(dry_z, vec2i(pixel), 0).x;
+        if z == 0.0 || q.z > z {
+            was_behind = false;
+            continue;
         }
-    }
-    var dry = vec4f(0.0);
-    if found {
-        let stride = ends.y - ends.x;
-        for (var k = 0u; k < steps / 3u; k++) {
-            let middle = 0.5 * (ends.x + ends.y);
-            let m = p + middle * direction;
-            let z = dry_z_at(pixel_from_eye(m));
-            ends = select(vec2f(middle, ends.y), vec2f(ends.x, middle), z != 0.0 && m.z <= z);
-        }
-        let hit = p + ends.y * direction;
-        let at = pixel_from_eye(hit);
+        let between = select(halved(p, direction, ends, steps / 3u), ends, was_behind);
+        let hit = p + between.y * direction;
+        let gap = dry_z_at(pixel_from_eye(hit)) - hit.z;
         // A ray that passes far behind something has not met it.
-        if dry_z_at(at) - hit.z <= 0.25 * stride + 0.01 * reach {
-            dry = dry_at(at);
+        if gap <= 0.25 * (ends.y - ends.x) + 0.01 * reach {
+            return Meeting(true, false, between.x, between.y);
         }
+        if gap < least {
+            least = gap;
+            meeting.behind = between.y;
+        }
+        was_behind = true;
+    }
+    meeting.hidden = was_behind;
+    return meeting;
+}
+
+/// The last step before a ray is behind the dry scene, halved so many times.
+fn halved(p: vec3f, direction: vec3f, step: vec2f, times: u32) -> vec2f {
+    var ends = step;
+    for (var k = 0u; k < times; k++) {
+        let middle = 0.5 * (ends.x + ends.y);
+        let m = p + middle * direction;
+        let z = dry_z_at(pixel_from_eye(m));
+        ends = select(vec2f(middle, ends.y), vec2f(ends.x, middle), z != 0.0 && m.z <= z);
+    }
+    return ends;
+}
+
+/// What stands in the liquid, met by a ray on the way to where it would leave: the scene is looked for only where it
+/// hides that place.
+fn stands_within(p: vec3f, direction: vec3f, leaves: f32, steps: u32) -> Meeting {
+    let end = p + leaves * direction;
+    let z = dry_z_at(pixel_from_eye(end));
+    if z == 0.0 || end.z >= z {
+        return Meeting(false, false, 0.0, 0.0);
+    }
+    return meet_dry(p, direction, leaves, steps);
+}
+
+fn background(p: vec3f, direction: vec3f, reach: f32, steps: u32) -> vec3f {
+    let meeting = meet_dry(p, direction, reach, steps);
+    var dry = vec4f(0.0);
+    if meeting.found || meeting.hidden {
+        dry = dry_at(pixel_from_eye(p + meeting.behind * direction));
     }
     return dry.rgb + (1.0 - dry.a) * sky_towards(direction);
 }

@@ -14,6 +14,7 @@ mod samples;
 mod shipped;
 mod statistics;
 mod steps;
+mod submerged;
 mod support;
 mod transfer;
 
@@ -94,6 +95,8 @@ fn main() -> ExitCode {
         distance::of_a_box,
         distance::of_a_sphere,
         distance::of_several_bodies,
+        submerged::what_stands_in_the_liquid_is_seen_through_it,
+        submerged::what_stands_before_the_liquid_hides_it,
         samples::samples_look_as_their_files_say,
         samples::the_animated_sample_moves_as_its_file_says,
         everything::files_beside_the_repository_render,

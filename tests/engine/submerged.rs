@@ -1,0 +1,69 @@
+//! Things in, before and above the liquid, in every method: seen, absorbed, hidden.
+
+use std::path::PathBuf;
+
+use meniscus::diagnostic::{Sources, Style, render_all};
+use meniscus::engine::Engine;
+use meniscus::files::MemoryFiles;
+use meniscus::host::{Cache, Job, Moment, Session, load};
+
+const GRAPHS: [&str; 3] = ["imai2016.ron", "imai2014.ron", "iwasaki2006.ron"];
+
+/// Without liquid the floor would lie right under the square.
+const NO_FLOOR: &[(&str, &str)] = &[("dry.floor", "false")];
+
+/// A level red square of 0.6 m, and a pool of 1.5 m that is 0.5 m deep, if there is one.
+fn files(graph: &str, height_m: f64, is_pool: bool) -> MemoryFiles {
+    let obj = "mtllib red.mtl\nv -0.3 0 -0.3\nv -0.3 0 0.3\nv 0.3 0 0.3\nv 0.3 0 -0.3\nusemtl red\nf 1 2 3 4\n";
+    let place = |i: usize| [i % 30, i / 30 % 10, i / 300].map(|n| n as f64 * 0.05);
+    let rows = (0..9000).map(place).map(|[x, y, z]| format!("{:.3},{:.3},{:.3}\n", x - 0.725, y + 0.025, z - 0.725));
+    let particles = if is_pool { "particles: {\"particles\": (file: \"pool.csv\", radius: 0.025)}," } else { "" };
+    let scene = format!(
+        "Scene(graph: {graph:?}, camera: Camera(eye: (0, 2.6, 1.3), target: (0, 0.25, 0), fov: 35.0), size: (96, 72),
+            lights: {{\"sun\": Light(direction: (0.1, -1, -0.1), intensity: 3.0)}}, {particles}
+            meshes: {{\"meshes\": [(file: \"red.obj\", position: (0, {height_m:?}, 0))]}})"
+    );
+    MemoryFiles::default()
+        .with("red.obj", obj)
+        .with("red.mtl", "newmtl red\nKd 0.8 0.02 0.02\nPr 0.9\n")
+        .with("pool.csv", format!("x,y,z\n{}", rows.collect::<String>()))
+        .with("scene.ron", scene)
+}
+
+/// How many pixels are red.
+fn red(engine: &mut Engine, files: &MemoryFiles, set: &[(&str, &str)]) -> usize {
+    let (mut sources, mut cache) = (Sources::new(), Cache::default());
+    let set = set.iter().map(|(name, value)| ((*name).to_owned(), (*value).to_owned())).collect();
+    let job = Job { source: PathBuf::from("scene.ron"), set, ..Job::default() };
+    let loaded = load(files, &mut sources, &job, &mut cache);
+    let said = render_all(&loaded.diagnostics, &sources, Style::Plain);
+    let mut session = Session::new(engine.gpu().clone());
+    session.build(loaded.content.unwrap_or_else(|| panic!("{said}"))).unwrap();
+    session.draw(Moment::default(), true).unwrap();
+    let is_red = |[r, g, b, _]: &&[f32; 4]| *r > 0.05 && *r > 2.0 * g.max(*b);
+    session.light().unwrap().rgba.iter().filter(is_red).count()
+}
+
+pub fn what_stands_in_the_liquid_is_seen_through_it(engine: &mut Engine) {
+    let dry = red(engine, &files("imai2016.ron", 0.2, false), NO_FLOOR);
+    assert!(dry > 300, "{dry} pixels are red where nothing is before them");
+    for graph in GRAPHS {
+        let pool = files(graph, 0.2, true);
+        let clear = red(engine, &pool, &[("absorption", "0,0,0")]);
+        let part = clear as f64 / dry as f64;
+        // Water lifts what is in it towards the eye, and waves of particles bend its edges.
+        assert!((0.7..1.6).contains(&part), "{graph}: {clear} pixels of {dry} are red through clear liquid");
+        let murky = red(engine, &pool, &[("absorption", "20,0,0")]);
+        assert!(murky * 4 < clear, "{graph}: {murky} of {clear} are red through liquid that absorbs red");
+    }
+}
+
+pub fn what_stands_before_the_liquid_hides_it(engine: &mut Engine) {
+    let dry = red(engine, &files("imai2016.ron", 0.9, false), NO_FLOOR);
+    for graph in GRAPHS {
+        let above = red(engine, &files(graph, 0.9, true), &[("absorption", "20,0,0")]);
+        let part = above as f64 / dry as f64;
+        // Pixels of its rim are half red, and what is behind them differs.
+        assert!((0.9..1.1).contains(&part), "{graph}: {above} pixels of {dry} are red above the liquid");
+    }
+}
