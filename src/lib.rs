@@ -23,3 +23,4 @@ pub mod shader;
 pub mod syntax;
 #[cfg(feature = "viewer")]
 pub mod viewer;
+mod words;

@@ -9,11 +9,13 @@ use std::sync::Arc;
 
 use crate::diagnostic::{Code, Diagnostic, Diagnostics, FileId, Sources, Span};
 use crate::files::{self, Files, Kind, NotFound};
+use crate::graph::declared::{Local, declared};
 use crate::graph::expr::Expr;
 use crate::graph::model::{Graph, Name, Node, NodeKind};
 use crate::parallel::in_parallel;
 use crate::shader::Gathered;
 use crate::shader::reflect::Module;
+use crate::words::Words;
 
 /// A graph with its parts and shaders, all read without error.
 #[derive(Clone, Debug)]
@@ -22,20 +24,58 @@ pub struct Program {
     graphs: BTreeMap<PathBuf, Arc<Graph>>,
     shaders: BTreeMap<PathBuf, Arc<Module>>,
     links: Links,
+    /// What is behind the links, and what each graph declares: planning asks for them all the time.
+    linked: BTreeMap<FileId, Words<Linked>>,
+    declared: BTreeMap<FileId, Arc<Words<Local>>>,
 }
 
 /// By the naming graph, by the name as written: the file that was taken.
 type Links = BTreeMap<PathBuf, BTreeMap<String, PathBuf>>;
 
+#[derive(Clone, Debug)]
+enum Linked {
+    Part(Arc<Graph>),
+    Shader(Arc<Module>),
+}
+
 impl Program {
+    fn new(
+        root: Arc<Graph>,
+        graphs: BTreeMap<PathBuf, Arc<Graph>>,
+        shaders: BTreeMap<PathBuf, Arc<Module>>,
+        links: Links,
+    ) -> Self {
+        let linked = |path: &PathBuf| {
+            let part = graphs.get(path).map(|part| Linked::Part(part.clone()));
+            part.or_else(|| shaders.get(path).map(|module| Linked::Shader(module.clone())))
+        };
+        let all = |links: &BTreeMap<String, PathBuf>| -> Words<Linked> {
+            links.iter().filter_map(|(name, path)| Some((name.clone(), linked(path)?))).collect()
+        };
+        let linked = links.iter().filter_map(|(from, links)| Some((graphs.get(from)?.file, all(links)))).collect();
+        let declared = graphs.values().map(|graph| (graph.file, declared(graph).into())).collect();
+        Self { root, graphs, shaders, links, linked, declared }
+    }
+
     /// The part that `graph` names so.
     pub fn part(&self, graph: &Graph, name: &str) -> Option<&Arc<Graph>> {
-        self.graphs.get(self.links.get(&graph.path)?.get(name)?)
+        match self.linked.get(&graph.file)?.get(name)? {
+            Linked::Part(part) => Some(part),
+            Linked::Shader(_) => None,
+        }
     }
 
     /// The shader that `graph` names so.
     pub fn shader(&self, graph: &Graph, name: &str) -> Option<&Arc<Module>> {
-        self.shaders.get(self.links.get(&graph.path)?.get(name)?)
+        match self.linked.get(&graph.file)?.get(name)? {
+            Linked::Shader(module) => Some(module),
+            Linked::Part(_) => None,
+        }
+    }
+
+    /// What each name of a graph of the program declares.
+    pub(crate) fn declared(&self, graph: &Graph) -> Arc<Words<Local>> {
+        self.declared.get(&graph.file).cloned().unwrap_or_else(|| declared(graph).into())
     }
 
     /// All graphs, the root among them, by file.
@@ -129,12 +169,11 @@ pub fn load(files: &dyn Files, sources: &mut Sources, name: &str, beside: Option
     read.sort();
     read.dedup();
     let program = match root.and_then(|path| graphs.get(&path)?.clone()) {
-        Some(root) if !diagnostics.has_errors() => Some(Program {
-            root,
-            graphs: graphs.into_iter().filter_map(|(path, graph)| Some((path, graph?))).collect(),
-            shaders: shaders.into_iter().filter_map(|(path, module)| Some((path, module?))).collect(),
-            links,
-        }),
+        Some(root) if !diagnostics.has_errors() => {
+            let graphs = graphs.into_iter().filter_map(|(path, graph)| Some((path, graph?))).collect();
+            let shaders = shaders.into_iter().filter_map(|(path, module)| Some((path, module?))).collect();
+            Some(Program::new(root, graphs, shaders, links))
+        }
         _ => None,
     };
     Loaded { program, diagnostics, read }

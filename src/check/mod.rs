@@ -12,18 +12,18 @@ mod variants;
 pub use device::Device;
 use variants::Variant;
 
-use crate::diagnostic::{Code, Diagnostic, Diagnostics, Severity};
+use crate::diagnostic::{Code, Diagnostic, Diagnostics, Severity, Span};
 use crate::parallel::in_parallel;
-use crate::plan;
-use crate::plan::model::{Plan, Request};
+use crate::plan::model::Request;
 use crate::plan::needs::feature_names;
+use crate::plan::{Findings, examine};
 use crate::program::Program;
 
 /// Everything that is wrong with a program, and what is odd about it in every variant.
 pub fn check(program: &Program) -> Diagnostics {
     let device = Device::anything();
-    let (mut found, plan) = check_with(program, &device);
-    plan.and_then(|plan| beyond_defaults(program, &plan)).into_iter().for_each(|note| found.push(note));
+    let (mut found, base) = check_with(program, &device);
+    base.and_then(|base| beyond_defaults(program, &base)).into_iter().for_each(|note| found.push(note));
     found
 }
 
@@ -36,13 +36,13 @@ pub fn check_on(program: &Program, device: &Device) -> Diagnostics {
     Diagnostics(explained.collect())
 }
 
-fn check_with(program: &Program, device: &Device) -> (Diagnostics, Option<Plan>) {
+fn check_with(program: &Program, device: &Device) -> (Diagnostics, Option<Findings>) {
     let mut found = passes::names(program);
     found.extend(clashes::clashes(program));
     found.extend(branches::differing(program));
     let base = variants::base(program, device);
-    let plan = match plan::instantiate_stand_in(program, &base) {
-        Ok(plan) => plan,
+    let at_base = match examine(program, &base) {
+        Ok(at_base) => at_base,
         // The variants would only say the same again.
         Err(diagnostics) => {
             // A clash was told where the names are declared; not again at the shader that uses them.
@@ -52,8 +52,8 @@ fn check_with(program: &Program, device: &Device) -> (Diagnostics, Option<Plan>)
             return (found, None);
         }
     };
-    let mut odd = oddities(&plan);
-    let variants = variants::others(program, &base, &plan);
+    let mut odd = oddities(&at_base);
+    let variants = variants::others(program, &base, &at_base);
     for outcome in in_parallel(&variants, &|variant| outcomes(program, variant)).into_iter().flatten() {
         match outcome {
             Ok(now) => odd.retain(|d| now.iter().any(|n| n.id == d.id && n.labels == d.labels)),
@@ -65,7 +65,7 @@ fn check_with(program: &Program, device: &Device) -> (Diagnostics, Option<Plan>)
         }
     }
     odd.into_iter().for_each(|diagnostic| found.push(diagnostic));
-    (found, Some(plan))
+    (found, Some(at_base))
 }
 
 /// The oddities of a variant, or its errors and the words that say what it is.
@@ -73,17 +73,17 @@ type Outcome<'a> = Result<Vec<Diagnostic>, (Diagnostics, &'a str)>;
 
 /// The outcome of a variant; if it is several things at once and fails, that of each.
 fn outcomes<'a>(program: &Program, variant: &'a Variant) -> Vec<Outcome<'a>> {
-    match plan::instantiate_stand_in(program, &variant.request) {
-        Ok(plan) => vec![Ok(oddities(&plan))],
+    match examine(program, &variant.request) {
+        Ok(found) => vec![Ok(oddities(&found))],
         Err(_) if !variant.each.is_empty() => variant.each.iter().flat_map(|each| outcomes(program, each)).collect(),
         Err(diagnostics) => vec![Err((diagnostics, &variant.said))],
     }
 }
 
 /// What the graph needs that not every device has.
-fn beyond_defaults(program: &Program, plan: &Plan) -> Option<Diagnostic> {
-    let features = feature_names(plan.needs.features).into_iter().map(|name| format!("the feature `{name}`"));
-    let limits = plan.needs.limits.iter().map(|(name, needed, default)| format!("`{name}` of {needed} (of {default})"));
+fn beyond_defaults(program: &Program, base: &Findings) -> Option<Diagnostic> {
+    let features = feature_names(base.needs.features).into_iter().map(|name| format!("the feature `{name}`"));
+    let limits = base.needs.limits.iter().map(|(name, needed, default)| format!("`{name}` of {needed} (of {default})"));
     let all: Vec<String> = features.chain(limits).collect();
     if all.is_empty() {
         return None;
@@ -102,14 +102,13 @@ pub fn stand_in(program: &Program) -> Request {
     variants::base(program, &Device::anything())
 }
 
-/// Warnings of a plan, and its culled passes: the same pass in a loop or in a part used twice
+/// Warnings of a plan, and passes that it culls: the same pass in a loop or in a part used twice
 /// counts as culled only if it is so everywhere.
-fn oddities(plan: &Plan) -> Vec<Diagnostic> {
-    let mut all: Vec<Diagnostic> = plan.warnings.iter().cloned().collect();
-    for culled in &plan.culled {
-        if plan.passes.iter().any(|p| {
-            p.span.file == culled.span.file && p.span.start <= culled.span.start && culled.span.end <= p.span.end
-        }) {
+fn oddities(found: &Findings) -> Vec<Diagnostic> {
+    let mut all: Vec<Diagnostic> = found.warnings.iter().cloned().collect();
+    for culled in &found.culled {
+        let holds = |p: &Span| p.file == culled.span.file && p.start <= culled.span.start && culled.span.end <= p.end;
+        if found.passes.iter().any(holds) {
             continue;
         }
         let message = format!("the pass `{}` is left out: {}", culled.path, culled.why);

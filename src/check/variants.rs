@@ -4,7 +4,8 @@ use super::device::Device;
 use crate::graph::model::{InputDefault, InputKind, ParamKind};
 use crate::graph::rows::Row;
 use crate::graph::value::Value;
-use crate::plan::model::{InputInfo, Param, Plan, Request};
+use crate::plan::Findings;
+use crate::plan::model::{InputInfo, Param, Request};
 use crate::program::Program;
 
 /// A scene that has everything that the graph asks for, also what is optional.
@@ -91,15 +92,15 @@ impl Variant {
     }
 }
 
-/// One thing at a time otherwise. `plan` is the plan of `base`: whether a parameter's value fits
+/// One thing at a time otherwise. `at_base` is what was found there: whether a parameter's value fits
 /// where a uniform holds it was seen there, so that only parameters on which more hangs are tried.
-pub(super) fn others(program: &Program, base: &Request, plan: &Plan) -> Vec<Variant> {
+pub(super) fn others(program: &Program, base: &Request, at_base: &Findings) -> Vec<Variant> {
     let mut all = Vec::new();
     let mut in_arithmetic = Vec::new();
-    for param in &plan.params {
-        if plan.structural.contains(&param.path) {
+    for param in &at_base.params {
+        if at_base.structural.contains(&param.path) {
             all.extend(other_values(param).into_iter().map(|value| Variant::param(base, param, value)));
-        } else if plan.arithmetic.contains(&param.path) {
+        } else if at_base.arithmetic.contains(&param.path) {
             in_arithmetic.push(param);
         }
     }

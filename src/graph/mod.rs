@@ -4,6 +4,7 @@
 //! [`expr`] is the small language inside strings, and [`eval`] gives expressions their values.
 //! Nothing here looks at shaders or knows what names stand for; `plan` does.
 
+pub(crate) mod declared;
 pub mod eval;
 pub mod expr;
 pub mod model;

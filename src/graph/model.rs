@@ -4,6 +4,7 @@
 mod raster;
 
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use super::expr::Expr;
 use super::rows::Row;
@@ -77,7 +78,7 @@ pub enum InputKind {
     /// Where a person points, in world space.
     Pointer,
     Particles {
-        attributes: Vec<Attribute>,
+        attributes: Arc<[Attribute]>,
     },
     /// Rows from the scene, packed by the reflected struct.
     Table,
@@ -89,7 +90,7 @@ pub enum InputKind {
     Counted,
     /// Bodies with triangles and materials, and values that each body has.
     Meshes {
-        values: Vec<Param>,
+        values: Arc<[Param]>,
     },
 }
 

@@ -8,6 +8,7 @@ mod budget;
 pub mod changes;
 mod cull;
 mod cuts;
+mod examine;
 pub mod explain;
 pub mod fields;
 mod fits;
@@ -25,15 +26,16 @@ pub mod print;
 mod state;
 pub mod stats;
 mod units;
+mod unused;
 
 use std::collections::{BTreeMap, BTreeSet};
 
+pub use examine::{Findings, examine};
 use lower::{Entity, Lowering};
 pub(crate) use lower::{input_fields, stand_in_texture};
-use model::{Object, ObjectId, ObjectRef, Output, Pass, Plan, Request};
+use model::{Object, ObjectId, ObjectRef, Output, Plan, Request};
 
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
-use crate::graph::model::{Graph, InputKind};
 use crate::program::Program;
 
 /// Makes a plan (rule 36): flattens, takes branches, unrolls loops, evaluates every expression,
@@ -74,7 +76,35 @@ struct Mode {
 }
 
 fn plan(program: &Program, request: &Request, mode: Mode) -> Result<Plan, Diagnostics> {
-    let stand_in = mode.stand_in;
+    let Lowered { mut lowering, outputs, roots, stats, culled, warnings } = lowered(program, request, mode.stand_in)?;
+    let argument_slots = insert::insert(&mut lowering);
+    insert::cover_steps(&mut lowering);
+    let given = outputs.iter().flat_map(|output| lowering.object_ids(output.object));
+    let own: BTreeSet<ObjectId> = roots.iter().copied().chain(given).collect();
+    let order = if mode.reorder { order::order(&mut lowering, &own) } else { model::Order::default() };
+    let (units, made_from) = units::units(&mut lowering);
+    state::seal(&mut lowering, &made_from);
+    if lowering.diagnostics.has_errors() {
+        return Err(lowering.diagnostics);
+    }
+    mark_unordered(&mut lowering);
+    let told = Told { culled, order, warnings, stats };
+    finish(lowering, outputs, &own, told, units, argument_slots)
+}
+
+/// A program as flat passes of which some were left out: all rules hold but those of state, and of
+/// what the device has.
+struct Lowered<'a> {
+    lowering: Lowering<'a>,
+    outputs: Vec<Output>,
+    /// What must be there after the last pass.
+    roots: Vec<ObjectId>,
+    stats: Vec<model::Stat>,
+    culled: Vec<model::Culled>,
+    warnings: Diagnostics,
+}
+
+fn lowered<'a>(program: &'a Program, request: &'a Request, stand_in: bool) -> Result<Lowered<'a>, Diagnostics> {
     let mut lowering = Lowering::new(program, request, stand_in);
     unknown_params(&mut lowering);
     lowering.run();
@@ -90,9 +120,9 @@ fn plan(program: &Program, request: &Request, mode: Mode) -> Result<Plan, Diagno
         return Err(lowering.diagnostics);
     }
     // One plan says nothing about the others: "unused" is for checks, which compare them.
-    let mut warnings = if stand_in { unused(&lowering) } else { Diagnostics::new() };
+    let mut warnings = if stand_in { unused::unused(&lowering) } else { Diagnostics::new() };
     let of_stats: Vec<ObjectRef> = stats.iter().flat_map(|s| &s.probes).map(|probe| probe.object).collect();
-    let unread = if stand_in { unread(&lowering, &outputs, &of_stats) } else { Vec::new() };
+    let unread = if stand_in { unused::unread(&lowering, &outputs, &of_stats) } else { Vec::new() };
     // A file by itself shows all passes that somebody may ask for.
     let looked_at: Vec<ObjectId> = of_stats.iter().flat_map(|object| lowering.object_ids(*object)).collect();
     let needed: Vec<ObjectId> = roots.iter().chain(looked_at.iter().filter(|_| stand_in)).copied().collect();
@@ -101,26 +131,14 @@ fn plan(program: &Program, request: &Request, mode: Mode) -> Result<Plan, Diagno
     }
     let culled = cull::cull(&mut lowering, if request.stats { &roots } else { &needed });
     // What only culled passes write is said of these.
-    let written = written(&lowering);
+    let written = unused::written(&lowering);
     for (object, was_written, diagnostic) in unread {
         if !was_written || written.contains(&object) {
             // One to an object: none of them is there already.
             warnings.0.push(diagnostic);
         }
     }
-    let argument_slots = insert::insert(&mut lowering);
-    insert::cover_steps(&mut lowering);
-    let given = outputs.iter().flat_map(|output| lowering.object_ids(output.object));
-    let own: BTreeSet<ObjectId> = roots.iter().copied().chain(given).collect();
-    let order = if mode.reorder { order::order(&mut lowering, &own) } else { model::Order::default() };
-    let (units, made_from) = units::units(&mut lowering);
-    state::seal(&mut lowering, &made_from);
-    if lowering.diagnostics.has_errors() {
-        return Err(lowering.diagnostics);
-    }
-    mark_unordered(&mut lowering);
-    let told = Told { culled, order, warnings, stats };
-    finish(lowering, outputs, &own, told, units, argument_slots)
+    Ok(Lowered { lowering, outputs, roots, stats, culled, warnings })
 }
 
 /// The rows that are given must be what the shader's struct asks for.
@@ -176,7 +194,7 @@ fn finish(
         .collect();
     memory::lifetimes(&mut objects, &touched, &lowering.steps);
     let memory = memory::share(&objects, &runs, &touched, &units, own);
-    let (needs, lacking) = needs::needs(&lowering, &objects);
+    let (needs, lacking) = needs::needs(&lowering, &objects.iter().map(|o| o.lifetime.is_some()).collect::<Vec<_>>());
     if lacking.has_errors() {
         lowering.diagnostics.extend(lacking);
         return Err(lowering.diagnostics);
@@ -205,8 +223,8 @@ fn finish(
         needs,
         stats,
         params: lowering.params.into_values().collect(),
-        structural: lowering.structural,
-        arithmetic: lowering.arithmetic,
+        structural: lowering.causes.params(&lowering.structural),
+        arithmetic: lowering.causes.params(&lowering.arithmetic),
         taken: lowering.program.taken(),
         argument_slots,
         warnings,
@@ -290,90 +308,6 @@ fn names(lowering: &Lowering<'_>) -> BTreeMap<String, ObjectRef> {
         }
     }
     names
-}
-
-/// Declarations that nothing asked for.
-fn unused(lowering: &Lowering<'_>) -> Diagnostics {
-    let mut found = Diagnostics::new();
-    let mut seen = BTreeSet::new();
-    for scope in &lowering.scopes {
-        let graph = &scope.graph;
-        if !seen.insert(graph.path.clone()) {
-            continue;
-        }
-        let declared = (graph.params.iter().map(|p| (&p.name, "parameter")))
-            .chain(graph.lets.iter().map(|l| (&l.name, "`let`")))
-            .chain(graph.samplers.iter().map(|s| (&s.name, "sampler")))
-            .chain(graph.resources.iter().map(|r| (&r.name, "resource")))
-            .chain(graph.inputs.iter().map(|i| (&i.name, "input")));
-        for (name, what) in declared {
-            if !lowering.used.contains(&name.span) {
-                let message = format!("nothing uses the {what} `{}`", name.value);
-                found.push(Diagnostic::warning(Code::UNUSED, message).at(name.span, "declared here"));
-            }
-        }
-        found.extend(unused_attributes(lowering, graph));
-    }
-    found
-}
-
-/// Attributes that no shader binds and no test asks for, in this graph or in a part.
-fn unused_attributes(lowering: &Lowering<'_>, graph: &Graph) -> Diagnostics {
-    let asked = |name: &str| {
-        let mut origins = lowering.objects.iter().map(|building| &building.object.origin);
-        origins.any(|o| matches!(o, model::Origin::Attribute { attribute, .. } if attribute == name))
-    };
-    let mut found = Diagnostics::new();
-    for input in &graph.inputs {
-        let InputKind::Particles { attributes } = &input.kind else { continue };
-        for attribute in attributes.iter().filter(|a| !asked(&a.name.value)) {
-            let message = format!("nothing uses the attribute `{}` of `{}`", attribute.name.value, input.name.value);
-            found.push(Diagnostic::warning(Code::UNUSED, message).at(attribute.name.span, "asked for here"));
-        }
-    }
-    found
-}
-
-/// Resources that nothing reads, and whether something writes them.
-fn unread(lowering: &Lowering<'_>, outputs: &[Output], of_stats: &[ObjectRef]) -> Vec<(ObjectRef, bool, Diagnostic)> {
-    let mut found = Vec::new();
-    let mut given: BTreeSet<ObjectRef> = outputs.iter().map(|o| o.object).chain(of_stats.iter().copied()).collect();
-    // What a part puts out is there for whoever wants it.
-    for scope in &lowering.scopes {
-        for output in &scope.graph.outputs {
-            let Some(lower::Local::Resource(i)) = scope.locals.get(&output.of.value) else { continue };
-            let var = scope.resources[*i].filter(|var| *var < lowering.vars.len());
-            given.extend(var.map(|var| lowering.vars[var].now));
-        }
-    }
-    let attached: BTreeSet<ObjectRef> = lowering.flat.iter().flat_map(|f| attached(&f.pass)).collect();
-    let read: BTreeSet<ObjectRef> =
-        lowering.flat.iter().flat_map(|f| &f.pass.accesses).filter(|a| a.read).map(|a| a.object).collect();
-    let written = written(lowering);
-    for (id, building) in lowering.objects.iter().enumerate() {
-        let object = ObjectRef::Fixed(id);
-        let of_frame = building.object.origin == model::Origin::Frame;
-        if of_frame && !attached.contains(&object) && !given.contains(&object) && !read.contains(&object) {
-            let message = format!("nothing reads `{}`", building.object.path);
-            let diagnostic = Diagnostic::warning(Code::NEVER_READ, message)
-                .at(building.object.span, "declared here")
-                .hint("put it among the `outputs`, or leave it and what writes it out");
-            found.push((object, written.contains(&object), diagnostic));
-        }
-    }
-    found
-}
-
-/// What any pass writes.
-fn written(lowering: &Lowering<'_>) -> BTreeSet<ObjectRef> {
-    lowering.flat.iter().flat_map(|f| &f.pass.accesses).filter(|a| a.write).map(|a| a.object).collect()
-}
-
-/// What a draw uses without a shader that reads it: its depth target, and samples that it resolves.
-fn attached(pass: &Pass) -> Vec<ObjectRef> {
-    let model::PassKind::Draw(draw) = &pass.kind else { return Vec::new() };
-    let resolved = draw.color.iter().filter(|target| target.resolve.is_some()).map(|target| target.view.object);
-    resolved.chain(draw.depth.iter().map(|depth| depth.view.object)).collect()
 }
 
 /// What the order of atomics reaches: a pass that uses an atomic's old value, and all that read

@@ -22,14 +22,15 @@ impl Wanted {
     }
 }
 
-/// Collects needs; what the device at hand lacks is an error.
-pub(super) fn needs(lowering: &Lowering<'_>, objects: &[Object]) -> (Needs, Diagnostics) {
+/// Collects needs; what the device at hand lacks is an error. `touched` tells of which objects any
+/// pass has to do with.
+pub(super) fn needs(lowering: &Lowering<'_>, touched: &[bool]) -> (Needs, Diagnostics) {
     let mut wanted = Wanted::default();
-    for object in objects.iter().filter(|o| o.lifetime.is_some()) {
-        of_object(&mut wanted, object);
+    for (building, _) in lowering.objects.iter().zip(touched).filter(|(_, touched)| **touched) {
+        of_object(&mut wanted, &building.object);
     }
     for flat in &lowering.flat {
-        of_pass(&mut wanted, lowering, &flat.pass, flat.word, &flat.trace, objects);
+        of_pass(&mut wanted, lowering, &flat.pass, flat.word, &flat.trace);
     }
     let mut found = Diagnostics::new();
     let mut limits = Vec::new();
@@ -78,7 +79,7 @@ fn of_object(wanted: &mut Wanted, object: &Object) {
     }
 }
 
-fn of_pass(wanted: &mut Wanted, lowering: &Lowering<'_>, pass: &Pass, word: Span, trace: &[Span], objects: &[Object]) {
+fn of_pass(wanted: &mut Wanted, lowering: &Lowering<'_>, pass: &Pass, word: Span, trace: &[Span]) {
     let shader = match &pass.kind {
         PassKind::Compute { shader, .. } => shader,
         PassKind::Draw(draw) => {
@@ -89,7 +90,7 @@ fn of_pass(wanted: &mut Wanted, lowering: &Lowering<'_>, pass: &Pass, word: Span
         }
         _ => return,
     };
-    of_bindings(wanted, lowering, shader, word, trace, objects);
+    of_bindings(wanted, lowering, shader, word, trace);
     let module = &lowering.modules[shader.module];
     for name in shader.compute.iter() {
         let Some(entry) = module.stage(Stage::Compute).find(|e| e.name == *name) else { continue };
@@ -103,14 +104,7 @@ fn of_pass(wanted: &mut Wanted, lowering: &Lowering<'_>, pass: &Pass, word: Span
     }
 }
 
-fn of_bindings(
-    wanted: &mut Wanted,
-    lowering: &Lowering<'_>,
-    shader: &ShaderUse,
-    word: Span,
-    trace: &[Span],
-    objects: &[Object],
-) {
+fn of_bindings(wanted: &mut Wanted, lowering: &Lowering<'_>, shader: &ShaderUse, word: Span, trace: &[Span]) {
     for stage in [ShaderStages::COMPUTE, ShaderStages::VERTEX, ShaderStages::FRAGMENT] {
         let mut counts: BTreeMap<&'static str, u64> = BTreeMap::new();
         for binding in shader.bindings.iter().filter(|b| b.stages.contains(stage)) {
@@ -120,11 +114,11 @@ fn of_bindings(
                     Some(("max_uniform_buffer_binding_size", u64::from(lowering.uniforms[*block].size))),
                 ),
                 Bound::UniformBuffer { buffer } => {
-                    let size = super::memory::bytes(&objects[lowering.object_id(*buffer)].kind);
+                    let size = super::memory::bytes(&lowering.object(*buffer).object.kind);
                     ("max_uniform_buffers_per_shader_stage", Some(("max_uniform_buffer_binding_size", size)))
                 }
                 Bound::Storage { buffer, .. } => {
-                    let size = super::memory::bytes(&objects[lowering.object_id(*buffer)].kind);
+                    let size = super::memory::bytes(&lowering.object(*buffer).object.kind);
                     ("max_storage_buffers_per_shader_stage", Some(("max_storage_buffer_binding_size", size)))
                 }
                 Bound::Material { bytes, .. } => (

@@ -2,8 +2,8 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::lower::{Lowering, fault, traced};
-use super::model::{Causes, ObjectId, Origin};
+use super::lower::{CauseKind, CauseSet, Lowering, fault, traced};
+use super::model::{ObjectId, Origin};
 use crate::diagnostic::{Code, Diagnostic, Span};
 use crate::graph::model::InputKind;
 
@@ -79,10 +79,12 @@ fn touched(lowering: &Lowering<'_>) -> BTreeMap<ObjectId, Touched> {
 
 /// Which state belongs to which steps, when it starts anew, and the rule that steps at a rate do
 /// not see the camera. `made_from` has what each unit of steps is made from.
-pub(super) fn seal(lowering: &mut Lowering<'_>, made_from: &BTreeMap<usize, Causes>) {
+pub(super) fn seal(lowering: &mut Lowering<'_>, made_from: &BTreeMap<usize, CauseSet>) {
     let inputs = &lowering.program.root.inputs;
-    let cameras: BTreeSet<String> =
-        inputs.iter().filter(|i| matches!(i.kind, InputKind::Camera)).map(|i| i.name.value.clone()).collect();
+    let cameras: BTreeSet<&str> =
+        inputs.iter().filter(|i| matches!(i.kind, InputKind::Camera)).map(|i| i.name.value.as_str()).collect();
+    let of_camera = |name: &str| name.split_once('.').is_some_and(|(input, _)| cameras.contains(input));
+    let cameras = lowering.causes.such(CauseKind::Live, of_camera);
     for index in 0..lowering.steps.len() {
         let state: Vec<ObjectId> = (0..lowering.objects.len())
             .filter(|id| lowering.objects[*id].object.origin == Origin::State(index))
@@ -106,18 +108,15 @@ pub(super) fn seal(lowering: &mut Lowering<'_>, made_from: &BTreeMap<usize, Caus
 /// A pass of the steps that depends on the camera.
 fn sees_camera(
     lowering: &Lowering<'_>,
-    made_from: &BTreeMap<usize, Causes>,
+    made_from: &BTreeMap<usize, CauseSet>,
     steps: usize,
-    cameras: &BTreeSet<String>,
+    cameras: &CauseSet,
 ) -> Option<Box<Diagnostic>> {
-    let sees = |causes: &Causes| {
-        causes.live.iter().any(|live| live.split_once('.').is_some_and(|(input, _)| cameras.contains(input)))
-    };
-    let of_camera = |unit: usize| made_from.get(&unit).is_some_and(sees);
+    let of_camera = |unit: usize| made_from.get(&unit).is_some_and(|causes| causes.meets(cameras));
     let flat = lowering.flat.iter().find(|f| f.pass.steps == Some(steps) && of_camera(f.pass.unit))?;
     let message = format!("`{}` runs at a rate and depends on the camera", flat.pass.path);
     let mut diagnostic = Diagnostic::error(Code::STATE, message).at(flat.word, "this pass");
-    if let Some(by) = lowering.flat.iter().find(|other| sees(&other.causes)).filter(|by| by.word != flat.word) {
+    if let Some(by) = lowering.flat.iter().find(|other| other.causes.meets(cameras)).filter(|by| by.word != flat.word) {
         diagnostic = diagnostic.see(by.word, "reads the camera, and what it makes comes there");
     }
     let diagnostic =

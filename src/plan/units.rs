@@ -1,13 +1,13 @@
 //! Units: passes that run or are skipped together, and what makes them run (rule 37).
 
-use std::collections::{BTreeMap, BTreeSet, HashMap, VecDeque};
+use std::collections::{BTreeMap, HashMap, VecDeque};
 
-use super::lower::Lowering;
-use super::model::{Causes, Geometry, ObjectId, PassKind, Unit};
+use super::lower::{CauseKind, CauseSet, Lowering};
+use super::model::{Geometry, ObjectId, PassKind, Unit};
 
 /// Groups the passes into units, numbers them in program order, and closes their causes. Also gives,
 /// for each unit of steps, all that it is made from, through other steps too.
-pub(super) fn units(lowering: &mut Lowering<'_>) -> (Vec<Unit>, BTreeMap<usize, Causes>) {
+pub(super) fn units(lowering: &mut Lowering<'_>) -> (Vec<Unit>, BTreeMap<usize, CauseSet>) {
     let group = groups(lowering);
     let mut sets = Sets::new(lowering.flat.len());
     // Passes that write one group, and readers of a version other than the last.
@@ -61,29 +61,23 @@ pub(super) fn units(lowering: &mut Lowering<'_>) -> (Vec<Unit>, BTreeMap<usize, 
         units[unit].passes.push(p);
     }
     let readers = readers(lowering, &units, &producers);
-    let names = Names::new(lowering);
-    let mut bits: Vec<Bits> = units
-        .iter()
-        .map(|unit| {
-            let mut bits = names.none();
-            unit.passes.iter().for_each(|p| names.set(&mut bits, &lowering.flat[*p].causes));
-            bits
-        })
-        .collect();
+    let mut all: Vec<CauseSet> = units.iter().map(|unit| own_causes(lowering, unit)).collect();
     let only_steps: Vec<bool> =
         units.iter().map(|unit| unit.passes.iter().all(|p| lowering.flat[*p].pass.steps.is_some())).collect();
-    let own = bits.clone();
-    let mut through = bits.clone();
-    close(&mut bits, &readers, &only_steps, &names.step());
+    let own = all.clone();
+    let mut through = all.clone();
+    // That a step ran.
+    let step = lowering.causes.set(CauseKind::Live, "step");
+    close(&mut all, &readers, &only_steps, &step);
     let mut made_from = BTreeMap::new();
     if !steps.is_empty() {
-        close(&mut through, &readers, &vec![false; units.len()], &names.step());
+        close(&mut through, &readers, &vec![false; units.len()], &step);
         let of_steps = steps.values().map(|p| lowering.flat[*p].pass.unit);
-        made_from.extend(of_steps.map(|unit| (unit, names.causes(&through[unit]))));
+        made_from.extend(of_steps.map(|unit| (unit, through[unit].clone())));
     }
-    for (((unit, bits), own), readers) in units.iter_mut().zip(&bits).zip(&own).zip(readers) {
-        unit.own = names.causes(own);
-        unit.causes = names.causes(bits);
+    for (((unit, all), own), readers) in units.iter_mut().zip(&all).zip(&own).zip(readers) {
+        unit.own = lowering.causes.named(own);
+        unit.causes = lowering.causes.named(all);
         unit.readers = readers;
     }
     (units, made_from)
@@ -104,102 +98,25 @@ fn readers(lowering: &Lowering<'_>, units: &[Unit], producers: &[Vec<usize>]) ->
 
 /// Hands every unit's causes on to its readers, until nothing changes. What comes out of steps is
 /// another only when a step ran, whatever the step was made from.
-fn close(bits: &mut [Bits], readers: &[Vec<usize>], only_steps: &[bool], step: &Bits) {
-    let mut queue: VecDeque<usize> = (0..bits.len()).collect();
-    let mut queued = vec![true; bits.len()];
+fn close(all: &mut [CauseSet], readers: &[Vec<usize>], only_steps: &[bool], step: &CauseSet) {
+    let mut queue: VecDeque<usize> = (0..all.len()).collect();
+    let mut queued = vec![true; all.len()];
     while let Some(from) = queue.pop_front() {
         queued[from] = false;
-        let given = if only_steps[from] { step.clone() } else { bits[from].clone() };
+        let given = if only_steps[from] { step.clone() } else { all[from].clone() };
         for to in &readers[from] {
-            let mut changed = false;
-            for (have, more) in bits[*to].iter_mut().zip(&given) {
-                changed |= *more & !*have != 0;
-                *have |= more;
-            }
-            if changed && !std::mem::replace(&mut queued[*to], true) {
+            if all[*to].add(&given) && !std::mem::replace(&mut queued[*to], true) {
                 queue.push_back(*to);
             }
         }
     }
 }
 
-/// A set of causes, as bits by [`Names`].
-type Bits = Vec<u64>;
-
-/// A kind of cause.
-#[derive(Clone, Copy)]
-enum Kind {
-    Input,
-    Live,
-    Param,
-    Viewport,
-}
-
-/// Every cause that a pass has by itself, by number: closing over sets of strings would take
-/// most of the time of planning.
-struct Names {
-    all: Vec<(Kind, String)>,
-    number: [HashMap<String, usize>; 4],
-}
-
-impl Names {
-    fn new(lowering: &Lowering<'_>) -> Self {
-        let mut names = Self { all: Vec::new(), number: Default::default() };
-        for flat in &lowering.flat {
-            for (kind, name) in each(&flat.causes) {
-                if !names.number[kind as usize].contains_key(name) {
-                    names.number[kind as usize].insert(name.to_owned(), names.all.len());
-                    names.all.push((kind, name.to_owned()));
-                }
-            }
-        }
-        names
-    }
-
-    fn none(&self) -> Bits {
-        vec![0; self.all.len().div_ceil(64)]
-    }
-
-    fn set(&self, bits: &mut Bits, causes: &Causes) {
-        for (kind, name) in each(causes) {
-            if let Some(n) = self.number[kind as usize].get(name) {
-                bits[n / 64] |= 1 << (n % 64);
-            }
-        }
-    }
-
-    /// That a step ran.
-    fn step(&self) -> Bits {
-        let mut bits = self.none();
-        self.set(&mut bits, &Causes { live: ["step".to_owned()].into(), ..Causes::default() });
-        bits
-    }
-
-    fn causes(&self, bits: &Bits) -> Causes {
-        let mut causes = Causes::default();
-        for (n, (kind, name)) in self.all.iter().enumerate() {
-            if bits[n / 64] & (1 << (n % 64)) == 0 {
-                continue;
-            }
-            match kind {
-                Kind::Input => _ = causes.inputs.insert(name.clone()),
-                Kind::Live => _ = causes.live.insert(name.clone()),
-                Kind::Param => _ = causes.params.insert(name.clone()),
-                Kind::Viewport => causes.viewport = true,
-            }
-        }
-        causes
-    }
-}
-
-fn each(causes: &Causes) -> impl Iterator<Item = (Kind, &str)> {
-    fn of(kind: Kind, names: &BTreeSet<String>) -> impl Iterator<Item = (Kind, &str)> {
-        names.iter().map(move |name| (kind, name.as_str()))
-    }
-    of(Kind::Input, &causes.inputs)
-        .chain(of(Kind::Live, &causes.live))
-        .chain(of(Kind::Param, &causes.params))
-        .chain(causes.viewport.then_some((Kind::Viewport, "")))
+/// What the passes of a unit depend on by themselves.
+fn own_causes(lowering: &Lowering<'_>, unit: &Unit) -> CauseSet {
+    let mut causes = CauseSet::default();
+    unit.passes.iter().for_each(|p| _ = causes.add(&lowering.flat[*p].causes));
+    causes
 }
 
 /// For each object a number that objects whose names swap share.

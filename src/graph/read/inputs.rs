@@ -50,9 +50,9 @@ pub(super) fn input(d: &mut Decoder<'_>, entry: &Named<'_>) -> Option<Input> {
         "Table" => InputKind::Table,
         "Buffer" => InputKind::Buffer,
         "Counted" => InputKind::Counted,
-        "Particles" => InputKind::Particles { attributes: attributes(d, &fields) },
+        "Particles" => InputKind::Particles { attributes: attributes(d, &fields).into() },
         "Texture" => InputKind::Texture { dimension: dimension(d, &fields) },
-        _ => InputKind::Meshes { values: values(d, &fields) },
+        _ => InputKind::Meshes { values: values(d, &fields).into() },
     };
     Some(Input { name: entry.name.clone(), kind, optional, default, span: entry.name.span.to(entry.node.span) })
 }

@@ -95,7 +95,12 @@ impl Cause {
 /// Every cause that a unit of the plan has, once.
 pub(super) fn causes(plan: &Plan) -> Vec<Cause> {
     let mut all = Causes::default();
-    plan.units.iter().for_each(|unit| all.add(&unit.causes));
+    for Causes { inputs, live, params, viewport } in plan.units.iter().map(|unit| &unit.causes) {
+        for (all, more) in [(&mut all.inputs, inputs), (&mut all.live, live), (&mut all.params, params)] {
+            all.extend(more.iter().filter(|name| !all.contains(*name)).cloned().collect::<Vec<_>>());
+        }
+        all.viewport |= viewport;
+    }
     let inputs = all.inputs.into_iter().map(Cause::Input);
     let live = all.live.into_iter().map(Cause::Live);
     let params = all.params.into_iter().map(Cause::Param);

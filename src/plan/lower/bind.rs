@@ -301,6 +301,9 @@ impl Lowering<'_> {
 
     /// Every entry of `bind` must name something of the shader.
     fn check_bind_names(&mut self, s: ScopeId, stages: &Stages, bind: &[(Name, ast::Bound)]) {
+        if bind.is_empty() {
+            return;
+        }
         let mut known: Vec<&str> = Vec::new();
         for global in &stages.module.globals {
             known.push(&global.name);

@@ -7,12 +7,12 @@ use wgpu_types::{BufferUsages, ShaderStages};
 use super::bind::Stages;
 use super::names::Entity;
 use super::nodes::Draft;
-use super::{Lowering, Result, ScopeId, fault, traced};
+use super::{CauseSet, Lowering, Result, ScopeId, fault, traced};
 use crate::diagnostic::{Code, Span};
 use crate::graph::expr::Expr;
 use crate::graph::model::{self as ast, Extent, Name, Node, ShaderRef};
 use crate::graph::value::Value;
-use crate::plan::model::{ArgumentKind, Causes, Dispatch, ObjectKind, ObjectRef, PassKind, ShaderUse};
+use crate::plan::model::{ArgumentKind, Dispatch, ObjectKind, ObjectRef, PassKind, ShaderUse};
 use crate::shader::reflect::{Entry, Module, Stage};
 
 /// WebGPU's limit on workgroups in one direction.
@@ -299,7 +299,7 @@ impl Lowering<'_> {
         match count {
             ast::Count::Each(name) => self.items(s, name, draft),
             ast::Count::Expr(expr) => {
-                let (n, causes): (i64, Causes) = self.whole(s, expr, what, 0)?;
+                let (n, causes): (i64, CauseSet) = self.whole(s, expr, what, 0)?;
                 draft.causes.add(&causes);
                 Ok(Items::Known(n as u64))
             }

@@ -1,14 +1,14 @@
 //! Inputs of a graph instance: what feeds them, their fields, and whether it fits.
 
-use super::names::{Entity, list, live};
+use super::names::{Entity, list};
 use super::vars::{buffer, stand_in_texture};
-use super::{Building, Lowering, Result, Scalar, ScopeId, VarId, fault, traced};
+use super::{Building, CauseKind, Lowering, Result, Scalar, ScopeId, VarId, fault, traced};
 use crate::diagnostic::{Code, Diagnostic, Span};
 use crate::graph::model::{Attribute, Input, InputKind, Param, ViewDimension};
 use crate::graph::value::Value;
 use crate::plan::fields;
 use crate::plan::meshes::MeshBuffer;
-use crate::plan::model::{Causes, InputInfo, Object, ObjectKind, Origin, Texture};
+use crate::plan::model::{InputInfo, Object, ObjectKind, Origin, Texture};
 
 impl Lowering<'_> {
     /// What an input, or a field of it, stands for: the thing outside that feeds it.
@@ -16,32 +16,22 @@ impl Lowering<'_> {
         let graph = self.scopes[s].graph.clone();
         let input = &graph.inputs[i];
         self.used.insert(input.name.span);
-        let outer = match self.scopes[s].parent {
-            None => {
-                let attributes = attributes(&input.kind);
-                return self.root_input(s, i, attributes, field, span);
-            }
-            Some(parent) => match self.scopes[s].binds.get(&input.name.value).cloned() {
-                Some(bound) => self.resolve(parent, &bound.value, bound.span)?,
-                None if self.scopes[parent].locals.contains_key(&input.name.value) => {
-                    self.resolve(parent, &input.name.value, span)?
-                }
-                None if input.optional => Entity::Absent,
-                None => return Err(self.missing_input(s, i)),
-            },
+        let Some(parent) = self.scopes[s].parent else {
+            return self.root_input(s, i, attributes(&input.kind), field, span);
         };
+        let outer = self.fed(s, i, parent, span)?;
         match (outer, field) {
             // Absent meshes are no bodies.
             (Entity::Absent, field) if matches!(input.kind, InputKind::Meshes { .. }) => {
-                self.mesh_thing(s, "", values(&input.kind), field, span)
+                self.mesh_thing(s, "", &input.kind, field, span)
             }
             (Entity::Input { root, kind: InputKind::Meshes { .. } }, Some(field)) => {
-                self.mesh_thing(s, &root, values(&input.kind), Some(field), span)
+                self.mesh_thing(s, &root, &input.kind, Some(field), span)
             }
             (entity, None) => Ok(entity),
             (Entity::Input { root, .. }, Some(field)) => {
                 let root_graph = self.program.root.clone();
-                let index = root_graph.inputs.iter().position(|i| i.name.value == root);
+                let index = root_graph.inputs.iter().position(|i| *i.name.value == *root);
                 match index {
                     Some(index) => self.root_input(s, index, attributes(&input.kind), Some(field), span),
                     None => Err(self.unknown(s, field, span)),
@@ -53,6 +43,28 @@ impl Lowering<'_> {
                 Err(traced(fault(Code::WRONG_KIND, message, span, "no such field"), &self.scopes[s].trace))
             }
         }
+    }
+
+    /// The thing outside that feeds an input of a part: the same wherever the part asks for it.
+    fn fed(&mut self, s: ScopeId, i: usize, parent: ScopeId, span: Span) -> Result<Entity> {
+        if let Some(known) = &self.scopes[s].fed[i] {
+            return Ok(known.clone());
+        }
+        let graph = self.scopes[s].graph.clone();
+        let input = &graph.inputs[i];
+        let entity = match self.scopes[s].binds.get(&input.name.value).cloned() {
+            Some(bound) => self.resolve(parent, &bound.value, bound.span)?,
+            None if self.scopes[parent].locals.contains_key(&input.name.value) => {
+                self.resolve(parent, &input.name.value, span)?
+            }
+            None if input.optional => Entity::Absent,
+            None => return Err(self.missing_input(s, i)),
+        };
+        // Scalars may be others in another iteration.
+        if !matches!(entity, Entity::Scalar(_)) {
+            self.scopes[s].fed[i] = Some(entity.clone());
+        }
+        Ok(entity)
     }
 
     pub(super) fn missing_input(&self, s: ScopeId, i: usize) -> Box<Diagnostic> {
@@ -113,11 +125,9 @@ impl Lowering<'_> {
         let name = input.name.value.clone();
         let request = self.request;
         let info = request.inputs.get(&name);
-        if let InputKind::Meshes { values } = &input.kind
-            && (info.is_some() || input.optional)
-        {
+        if matches!(input.kind, InputKind::Meshes { .. }) && (info.is_some() || input.optional) {
             return match info {
-                Some(InputInfo::Meshes(_)) | None => self.mesh_thing(s, &name, values, field, span),
+                Some(InputInfo::Meshes(_)) | None => self.mesh_thing(s, &name, &input.kind, field, span),
                 Some(_) => Err(self.wrongly_fed(&name, input)),
             };
         }
@@ -136,9 +146,9 @@ impl Lowering<'_> {
             _ => return Ok(Entity::Var(self.input_var(&name, i, info)?)),
         };
         match field {
-            None => Ok(Entity::Input { root: name, kind: input.kind.clone() }),
+            None => Ok(Entity::Input { root: name.into(), kind: input.kind.clone() }),
             Some(field) if table.iter().any(|(known, _)| *known == field) => {
-                Ok(Entity::Scalar(live(&format!("{name}.{field}"), span)))
+                Ok(Entity::Scalar(self.live(&format!("{name}.{field}"), span)))
             }
             Some(field) => Err(self.unknown_field(s, &name, field, table, span)),
         }
@@ -182,7 +192,7 @@ impl Lowering<'_> {
             }
             return Err(self.wrongly_fed(&name, input));
         };
-        let Some(field) = field else { return Ok(Entity::Input { root: name, kind: input.kind.clone() }) };
+        let Some(field) = field else { return Ok(Entity::Input { root: name.into(), kind: input.kind.clone() }) };
         let value = match field {
             "count" => Value::Int(i64::try_from(*count).unwrap_or(i64::MAX)),
             "radius" => Value::Float(*radius),
@@ -203,7 +213,7 @@ impl Lowering<'_> {
                 return Ok(Entity::Var(self.attribute_var(&name, attribute, *count, present.is_some(), input.span)));
             }
         };
-        let causes = Causes { inputs: [name].into(), ..Causes::default() };
+        let causes = self.causes.set(CauseKind::Input, &name);
         Ok(Entity::Scalar(Scalar::caused(value, causes)))
     }
 
@@ -232,7 +242,7 @@ impl Lowering<'_> {
             (_, Some(_)) => return Err(self.wrongly_fed(name, input)),
             (_, None) => return Err(self.missing_input(0, i)),
         };
-        let causes = Causes { inputs: [name.to_owned()].into(), ..Causes::default() };
+        let causes = self.causes.set(CauseKind::Input, name);
         let object = Object {
             path: name.to_owned(),
             kind,
@@ -259,7 +269,7 @@ impl Lowering<'_> {
         if let Some(var) = self.input_vars.get(&path) {
             return *var;
         }
-        let causes = Causes { inputs: [input.to_owned()].into(), ..Causes::default() };
+        let causes = self.causes.set(CauseKind::Input, input);
         let object = Object {
             path: path.clone(),
             kind: buffer(count, false),
@@ -364,7 +374,7 @@ pub(crate) fn input_fields(kind: &InputKind) -> impl Iterator<Item = &str> {
 }
 
 /// What an input of meshes wants of each body.
-fn values(kind: &InputKind) -> &[Param] {
+pub(super) fn values(kind: &InputKind) -> &[Param] {
     match kind {
         InputKind::Meshes { values } => values,
         _ => &[],

@@ -1,13 +1,15 @@
 //! Meshes: their buffers and scalars by name, vertex inputs, and the materials that draws bind.
 
+use std::sync::LazyLock;
+
 use wgpu_types::BufferUsages;
 
 use super::bind::{Feed, Stages, describe};
 use super::buffers::same_type;
-use super::inputs::input_fields;
+use super::inputs::{input_fields, values};
 use super::names::{Entity, list};
 use super::nodes::Draft;
-use super::{Building, Layout, Lowering, Place, Result, Scalar, ScopeId, VarId, fault, traced};
+use super::{Building, CauseKind, CauseSet, Layout, Lowering, Place, Result, Scalar, ScopeId, VarId, fault, traced};
 use crate::diagnostic::{Code, Diagnostic, Span};
 use crate::format::SampleKind;
 use crate::graph::model::{self as ast, InputKind, Name, Param};
@@ -16,7 +18,7 @@ use crate::plan::meshes::{
     MATERIAL, MATERIAL_ALIGNMENT, MaterialTexture, MeshBuffer, MeshDraw, MeshGeometry, MeshesInfo, VertexAttribute,
     VertexBuffer, instance_type,
 };
-use crate::plan::model::{Access, Bound, Buffer, Causes, Geometry, InputInfo, Object, ObjectKind, ObjectRef, Origin};
+use crate::plan::model::{Access, Bound, Buffer, Geometry, InputInfo, Object, ObjectKind, ObjectRef, Origin};
 use crate::shader::reflect::{Entry, Global, GlobalKind, TextureDimension, Type};
 
 /// The meshes that a draw shows.
@@ -28,37 +30,42 @@ pub(super) struct MeshInput {
     pub name: Name,
 }
 
-impl Lowering<'_> {
+impl<'p> Lowering<'p> {
     /// What feeds an input of the root; no bodies where nothing does.
-    fn mesh_info(&self, root: &str) -> MeshesInfo {
+    fn mesh_info(&self, root: &str) -> &'p MeshesInfo {
+        static NONE: LazyLock<MeshesInfo> = LazyLock::new(MeshesInfo::default);
         match self.request.inputs.get(root) {
-            Some(InputInfo::Meshes(info)) => info.clone(),
-            _ => MeshesInfo::default(),
+            Some(InputInfo::Meshes(info)) => info,
+            _ => &NONE,
         }
+    }
+
+    /// What depends on an input; on nothing where nothing feeds it.
+    fn causes_of(&mut self, root: &str) -> CauseSet {
+        if root.is_empty() { CauseSet::default() } else { self.causes.set(CauseKind::Input, root) }
     }
 
     /// Whether nothing feeds an optional input: meshes then are no bodies, and stand all the same.
     pub(super) fn is_absent(&self, entity: &Entity) -> bool {
         match entity {
             Entity::Absent => true,
-            Entity::Input { root, kind: InputKind::Meshes { .. } } => !self.request.inputs.contains_key(root),
+            Entity::Input { root, kind: InputKind::Meshes { .. } } => !self.request.inputs.contains_key(&**root),
             _ => false,
         }
     }
 
-    /// An input of meshes, or a field of it. `declared` are the values that the asking graph wants.
+    /// An input of meshes, or a field of it. `kind` is what the asking graph wants.
     pub(super) fn mesh_thing(
         &mut self,
         s: ScopeId,
         root: &str,
-        declared: &[Param],
+        kind: &InputKind,
         field: Option<&str>,
         span: Span,
     ) -> Result<Entity> {
-        let kind = InputKind::Meshes { values: declared.to_vec() };
-        let Some(field) = field else { return Ok(Entity::Input { root: root.to_owned(), kind }) };
+        let Some(field) = field else { return Ok(Entity::Input { root: root.into(), kind: kind.clone() }) };
         let info = self.mesh_info(root);
-        let causes = causes_of(root);
+        let causes = self.causes_of(root);
         let scalar = match field {
             "count" => Some(Value::Int(i64::try_from(info.bodies).unwrap_or(i64::MAX))),
             "min" => Some(Value::vec(info.min)),
@@ -69,10 +76,10 @@ impl Lowering<'_> {
             return Ok(Entity::Scalar(Scalar::caused(value, causes)));
         }
         if let Some((_, buffer)) = MeshBuffer::NAMED.iter().find(|(name, _)| *name == field) {
-            return Ok(Entity::Var(self.mesh_var(root, &info, buffer.clone(), span)));
+            return Ok(Entity::Var(self.mesh_var(root, info, buffer.clone(), span)));
         }
-        let Some(value) = declared.iter().find(|v| v.name.value == field) else {
-            let names: Vec<String> = input_fields(&kind).map(str::to_owned).collect();
+        let Some(value) = values(kind).iter().find(|v| v.name.value == field) else {
+            let names: Vec<String> = input_fields(kind).map(str::to_owned).collect();
             let message = format!("meshes have no field `{field}`");
             let diagnostic = fault(Code::UNKNOWN_NAME, message, span, "unknown field")
                 .nearest(field, names.iter().map(String::as_str))
@@ -80,10 +87,10 @@ impl Lowering<'_> {
             return Err(traced(diagnostic, &self.scopes[s].trace));
         };
         self.used.insert(value.name.span);
-        self.check_values(root, &info, value)?;
+        self.check_values(root, info, value)?;
         let default = value.default.as_ref().map(|d| d.value.clone());
         let buffer = MeshBuffer::Value { name: field.to_owned(), default };
-        Ok(Entity::Var(self.mesh_var(root, &info, buffer, value.name.span)))
+        Ok(Entity::Var(self.mesh_var(root, info, buffer, value.name.span)))
     }
 
     /// Every body must have a value that fits, or the declaration a default.
@@ -123,9 +130,9 @@ impl Lowering<'_> {
     }
 
     fn add_mesh_var(&mut self, root: &str, info: &MeshesInfo, buffer: MeshBuffer, path: String, at: Span) -> VarId {
-        let mut causes = causes_of(root);
+        let mut causes = self.causes_of(root);
         if buffer.moves() && info.animated {
-            causes.live.insert("time".to_owned());
+            causes.add(&self.causes.set(CauseKind::Live, "time"));
         }
         let declared = self.program.root.inputs.iter().find(|i| i.name.value == root).map(|i| i.name.span);
         let object = Object {
@@ -179,7 +186,9 @@ impl Lowering<'_> {
     /// The meshes that a draw names.
     pub(super) fn mesh_input(&mut self, s: ScopeId, name: &Name) -> Result<MeshInput> {
         match self.resolve(s, &name.value, name.span)? {
-            Entity::Input { root, kind: InputKind::Meshes { .. } } => Ok(MeshInput { root, name: name.clone() }),
+            Entity::Input { root, kind: InputKind::Meshes { .. } } => {
+                Ok(MeshInput { root: root.to_string(), name: name.clone() })
+            }
             other => {
                 let message = format!("`{}` is {}, not meshes", name.value, self.what(&other));
                 let diagnostic =
@@ -204,10 +213,10 @@ impl Lowering<'_> {
         for input in vertex.iter().flat_map(|v| &v.inputs) {
             let attribute = self.vertex_attribute(s, stages, &input.name, &input.ty, input.span)?;
             let buffer = (attribute != VertexAttribute::Instance)
-                .then(|| self.mesh_read(meshes, &info, MeshBuffer::Vertices(attribute), BufferUsages::VERTEX, draft));
+                .then(|| self.mesh_read(meshes, info, MeshBuffer::Vertices(attribute), BufferUsages::VERTEX, draft));
             vertices.push(VertexBuffer { location: input.location, attribute, buffer });
         }
-        let indices = self.mesh_read(meshes, &info, MeshBuffer::Triangles, BufferUsages::INDEX, draft);
+        let indices = self.mesh_read(meshes, info, MeshBuffer::Triangles, BufferUsages::INDEX, draft);
         let tagged = |call: &MeshDraw| match &draw.tags {
             Some(tags) => tags.iter().any(|tag| call.tags.contains(&tag.value)),
             None => true,
@@ -273,7 +282,7 @@ impl Lowering<'_> {
         draft: &mut Draft,
     ) -> Result<Option<Bound>> {
         let Some(kind) = material_kind(place.global()) else { return Ok(None) };
-        draft.causes.add(&causes_of(&meshes.root));
+        draft.causes.add(&self.causes_of(&meshes.root));
         let input = meshes.root.clone();
         match (kind, &place.global().kind) {
             (MaterialKind::Factors, GlobalKind::Uniform(ty)) => {
@@ -327,7 +336,7 @@ impl Lowering<'_> {
             }
         }
         let info = self.mesh_info(&meshes.root);
-        let var = self.material_var(&meshes.root, &info, ty, *size, meshes.name.span);
+        let var = self.material_var(&meshes.root, info, ty, *size, meshes.name.span);
         let object = self.vars[var].now;
         self.buffer_usage(object, BufferUsages::UNIFORM);
         let access = Access { object, mips: 0..1, layers: 0..1, read: true, write: false, whole: false };
@@ -394,12 +403,6 @@ impl Lowering<'_> {
         };
         traced(diagnostic, &self.scopes[s].trace)
     }
-}
-
-/// What depends on an input; on nothing where nothing feeds it.
-fn causes_of(root: &str) -> Causes {
-    let inputs = if root.is_empty() { None } else { Some(root.to_owned()) };
-    Causes { inputs: inputs.into_iter().collect(), ..Causes::default() }
 }
 
 #[derive(Clone, Copy)]

@@ -7,12 +7,14 @@
 
 mod bind;
 mod buffers;
+mod causes;
 mod draw;
 mod extent;
 mod inputs;
 mod meshes;
 mod names;
 mod nodes;
+mod parts;
 mod scalars;
 mod stats;
 mod steps;
@@ -23,21 +25,25 @@ mod transfer;
 mod uniform;
 mod vars;
 mod view;
+mod wgsl;
 
-use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::collections::{BTreeMap, BTreeSet, HashSet};
 use std::sync::Arc;
 
+pub(super) use causes::{CauseKind, CauseNames, CauseSet};
 pub(crate) use inputs::input_fields;
-pub(super) use names::{Entity, Local, list};
+pub(super) use names::{Entity, list};
 pub(crate) use vars::stand_in_texture;
 
-use super::model::{self, Causes, ObjectId, ObjectRef, Pass, Request, UniformBlock};
+use super::model::{self, ObjectId, ObjectRef, Pass, Request, UniformBlock};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics, Span};
+use crate::graph::declared::Local;
 use crate::graph::expr::Expr;
 use crate::graph::model::{Graph, Name, Sampler};
 use crate::graph::value::Value;
 use crate::program::Program;
 use crate::shader::reflect::{Module, Type};
+use crate::words::{WordState, Words};
 
 pub(super) type ScopeId = usize;
 pub(super) type VarId = usize;
@@ -53,7 +59,7 @@ pub(super) type FeaturePlace = (Span, &'static str, Vec<Span>);
 pub(super) struct FlatPass {
     pub pass: Pass,
     /// What it depends on from outside the graph, by itself.
-    pub causes: Causes,
+    pub causes: CauseSet,
     /// The first word of its declaration.
     pub word: Span,
     /// Where the parts that it lies in are used, outermost first.
@@ -91,14 +97,17 @@ pub(super) struct Scope {
     /// The `Use`s that lead here, outermost first.
     pub trace: Vec<Span>,
     /// What each name declared in this file is.
-    pub locals: HashMap<String, Local>,
+    pub locals: Arc<Words<Local>>,
     /// Inputs by name to names of the parent.
     pub binds: BTreeMap<String, Name>,
     /// Parameters that the `Use` gave.
     pub given: BTreeMap<String, (Scalar, Span)>,
     pub counters: Vec<(String, i64)>,
-    /// Paths of two names that WGSL names of it could be.
-    dotted: HashMap<String, Arc<[String]>>,
+    /// What names in WGSL could be.
+    spelled: Words<Arc<[Arc<str>]>>,
+    /// The values of parameters that no `Use` gives, and what feeds inputs, once asked for.
+    own_params: Vec<Option<Scalar>>,
+    fed: Vec<Option<Entity>>,
     /// What it was given depends on a counter of a loop outside.
     pub given_counts: bool,
     pub children: BTreeMap<String, ScopeId>,
@@ -123,7 +132,7 @@ enum LetState {
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Scalar {
     pub value: model::UniformValue,
-    pub causes: Arc<Causes>,
+    pub causes: CauseSet,
 }
 
 /// A texture or buffer under a name; swaps change which memory it has.
@@ -142,7 +151,7 @@ pub(super) struct Building {
     /// A stand-in for an input that nothing describes: takes the format that a shader wants.
     pub adapts: bool,
     /// What its size depends on.
-    pub causes: Causes,
+    pub causes: CauseSet,
 }
 
 #[derive(Clone, Debug)]
@@ -175,9 +184,9 @@ pub(super) struct Lowering<'a> {
     pub feature_places: BTreeMap<&'static str, FeaturePlace>,
     pub diagnostics: Diagnostics,
     /// Declarations that something asked for, for "unused".
-    pub used: BTreeSet<Span>,
+    pub used: HashSet<Span, WordState>,
     /// Causes of the branches and loops around the node that is being lowered.
-    structure: Vec<Causes>,
+    structure: Vec<CauseSet>,
     in_steps: Option<usize>,
     /// `[2]`, or `[2][0]` in a loop in a loop.
     iteration: String,
@@ -190,9 +199,11 @@ pub(super) struct Lowering<'a> {
     /// Names whose values are being worked out, innermost last: one that comes again is a circle.
     evaluating: Vec<(Span, String)>,
     /// Parameters that more hangs on than what a uniform holds: sizes, counts, tests, constants.
-    pub structural: BTreeSet<String>,
+    pub structural: CauseSet,
     /// Parameters that stand in arithmetic, which can fail at other values than these.
-    pub arithmetic: BTreeSet<String>,
+    pub arithmetic: CauseSet,
+    /// What anything can depend on.
+    pub causes: CauseNames,
     /// Iterations and passes so far.
     unrolled: u64,
 }
@@ -217,7 +228,7 @@ impl<'a> Lowering<'a> {
             features: wgpu_types::Features::empty(),
             feature_places: BTreeMap::new(),
             diagnostics: Diagnostics::new(),
-            used: BTreeSet::new(),
+            used: HashSet::default(),
             structure: Vec::new(),
             in_steps: None,
             iteration: String::new(),
@@ -225,8 +236,9 @@ impl<'a> Lowering<'a> {
             depth: 0,
             input_vars: BTreeMap::new(),
             evaluating: Vec::new(),
-            structural: BTreeSet::new(),
-            arithmetic: BTreeSet::new(),
+            structural: CauseSet::default(),
+            arithmetic: CauseSet::default(),
+            causes: CauseNames::default(),
             unrolled: 0,
         }
     }
@@ -314,37 +326,15 @@ impl<'a> Lowering<'a> {
 
 impl Scalar {
     pub fn known(value: Value) -> Self {
-        Self::caused(value, Causes::default())
+        Self::caused(value, CauseSet::default())
     }
 
-    pub fn caused(value: Value, causes: Causes) -> Self {
-        Self { value: model::UniformValue::Known(value), causes: causes.into() }
+    pub fn caused(value: Value, causes: CauseSet) -> Self {
+        Self { value: model::UniformValue::Known(value), causes }
     }
 
-    pub fn live(expr: Expr, causes: Causes) -> Self {
-        Self { value: model::UniformValue::Live(expr), causes: causes.into() }
-    }
-}
-
-impl Causes {
-    pub fn add(&mut self, other: &Causes) {
-        add_new(&mut self.inputs, &other.inputs);
-        add_new(&mut self.live, &other.live);
-        add_new(&mut self.params, &other.params);
-        self.viewport |= other.viewport;
-    }
-}
-
-/// Most names are there already: those are not copied first.
-fn add_new(all: &mut BTreeSet<String>, more: &BTreeSet<String>) {
-    if all.is_empty() {
-        all.clone_from(more);
-        return;
-    }
-    for name in more {
-        if !all.contains(name) {
-            all.insert(name.clone());
-        }
+    pub fn live(expr: Expr, causes: CauseSet) -> Self {
+        Self { value: model::UniformValue::Live(expr), causes }
     }
 }
 

@@ -1,9 +1,9 @@
 //! Walking the pass list: parts, loops, branches.
 
-use super::{FlatPass, LetState, Lowering, Place, Result, ScopeId, fault, traced};
+use super::{CauseSet, FlatPass, LetState, Lowering, Place, Result, ScopeId, fault, traced};
 use crate::diagnostic::{Code, Span};
 use crate::graph::model::{self as ast, Name, Node, NodeKind};
-use crate::plan::model::{Access, Causes, ObjectRef, Pass, PassKind, UniformValue};
+use crate::plan::model::{Access, ObjectRef, Pass, PassKind, UniformValue};
 
 /// Iterations and passes that a plan may have: a frame of so many would take seconds.
 const MAX_UNROLLED: u64 = 10_000;
@@ -11,7 +11,7 @@ const MAX_UNROLLED: u64 = 10_000;
 /// What a pass is put together from.
 pub(super) struct Draft {
     pub kind: PassKind,
-    pub causes: Causes,
+    pub causes: CauseSet,
     pub accesses: Vec<(Access, Place)>,
     pub counted: Vec<(ObjectRef, crate::plan::model::ArgumentKind)>,
     pub arguments: Option<(ObjectRef, u64, bool)>,
@@ -20,7 +20,7 @@ pub(super) struct Draft {
 
 impl Draft {
     pub fn new(kind: PassKind) -> Self {
-        let causes = Causes::default();
+        let causes = CauseSet::default();
         Self { kind, causes, accesses: Vec::new(), counted: Vec::new(), arguments: None, unordered: false }
     }
 }
@@ -175,7 +175,7 @@ impl Lowering<'_> {
     }
 
     /// A scalar that must be known now, with the causes kept in `causes`.
-    pub(super) fn plain(&mut self, s: ScopeId, expr: &crate::graph::expr::Expr, causes: &mut Causes) -> Result<f64> {
+    pub(super) fn plain(&mut self, s: ScopeId, expr: &crate::graph::expr::Expr, causes: &mut CauseSet) -> Result<f64> {
         let (value, depends) = self.number(s, expr)?;
         causes.add(&depends);
         Ok(value)

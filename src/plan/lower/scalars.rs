@@ -2,21 +2,21 @@
 
 use std::cell::RefCell;
 
-use super::names::{Entity, join, live};
-use super::{LetState, Lowering, Result, Scalar, ScopeId, fault, traced};
+use super::names::{Entity, join};
+use super::{CauseKind, CauseSet, LetState, Lowering, Result, Scalar, ScopeId, fault, traced};
 use crate::diagnostic::{Code, Diagnostic, Span};
 use crate::graph::eval::{self, Lookup};
 use crate::graph::expr::{Expr, ExprKind, Function};
 use crate::graph::model::{Param, ParamKind};
 use crate::graph::value::Value;
-use crate::plan::model::{self, Causes, ObjectKind, UniformValue};
+use crate::plan::model::{self, ObjectKind, UniformValue};
 
 /// The names of one graph instance, as the expression language asks for them. Gathers what the
 /// answers depend on.
 struct Names<'l, 'p> {
     lowering: RefCell<&'l mut Lowering<'p>>,
     scope: ScopeId,
-    causes: RefCell<Causes>,
+    causes: RefCell<CauseSet>,
 }
 
 impl eval::Scope for Names<'_, '_> {
@@ -91,25 +91,25 @@ impl<'p> Lowering<'p> {
         let causes = names.causes.into_inner();
         // Arithmetic can fail at other values than these.
         if !matches!(expr.kind, ExprKind::Literal(_) | ExprKind::Name(_)) {
-            self.arithmetic.extend(causes.params.iter().cloned());
+            self.arithmetic.add(&causes);
         }
         let value = match folded.kind {
             ExprKind::Literal(value) => UniformValue::Known(value),
             _ => UniformValue::Live(folded),
         };
-        Ok(Scalar { value, causes: causes.into() })
+        Ok(Scalar { value, causes })
     }
 
     /// Evaluates what must be known now: sizes, counts, tests.
-    pub fn known(&mut self, s: ScopeId, expr: &Expr) -> Result<(Value, Causes)> {
+    pub fn known(&mut self, s: ScopeId, expr: &Expr) -> Result<(Value, CauseSet)> {
         let names = Names { lowering: RefCell::new(self), scope: s, causes: RefCell::default() };
         let value = eval::eval(expr, &names).map_err(Box::new)?;
         let causes = names.causes.into_inner();
-        self.structural.extend(causes.params.iter().cloned());
+        self.structural.add(&causes);
         Ok((value, causes))
     }
 
-    pub fn boolean(&mut self, s: ScopeId, expr: &Expr) -> Result<(bool, Causes)> {
+    pub fn boolean(&mut self, s: ScopeId, expr: &Expr) -> Result<(bool, CauseSet)> {
         let (value, causes) = self.known(s, expr)?;
         match value {
             Value::Bool(value) => Ok((value, causes)),
@@ -118,7 +118,7 @@ impl<'p> Lowering<'p> {
     }
 
     /// A whole number of at least `least`.
-    pub fn whole(&mut self, s: ScopeId, expr: &Expr, what: &str, least: i64) -> Result<(i64, Causes)> {
+    pub fn whole(&mut self, s: ScopeId, expr: &Expr, what: &str, least: i64) -> Result<(i64, CauseSet)> {
         let (value, causes) = self.known(s, expr)?;
         match value {
             Value::Int(value) if value >= least => Ok((value, causes)),
@@ -137,7 +137,7 @@ impl<'p> Lowering<'p> {
         }
     }
 
-    pub fn number(&mut self, s: ScopeId, expr: &Expr) -> Result<(f64, Causes)> {
+    pub fn number(&mut self, s: ScopeId, expr: &Expr) -> Result<(f64, CauseSet)> {
         let (value, causes) = self.known(s, expr)?;
         match value.as_f64() {
             Some(number) => Ok((number, causes)),
@@ -191,12 +191,15 @@ impl<'p> Lowering<'p> {
     }
 
     /// The value of a parameter that no `Use` gives.
-    fn own_param(&self, s: ScopeId, i: usize) -> Result<Scalar> {
-        let param = &self.scopes[s].graph.params[i];
+    fn own_param(&mut self, s: ScopeId, i: usize) -> Result<Scalar> {
+        if let Some(known) = &self.scopes[s].own_params[i] {
+            return Ok(known.clone());
+        }
+        let graph = self.scopes[s].graph.clone();
+        let param = &graph.params[i];
         let path = join(&self.scopes[s].path, &param.name.value);
-        let causes = Causes { params: [path.clone()].into(), ..Causes::default() };
-        let asked = self.request.params.get(&path).cloned();
-        let given = match (&asked, &param.default) {
+        let causes = self.causes.set(CauseKind::Param, &path);
+        let given = match (self.request.params.get(&path), &param.default) {
             (Some(value), _) => value.clone(),
             (None, Some(default)) => default.value.clone(),
             (None, None) if self.stand_in => made_up(param),
@@ -206,8 +209,9 @@ impl<'p> Lowering<'p> {
                 return Err(traced(diagnostic, &self.scopes[s].trace));
             }
         };
-        let known = Scalar::caused(given, causes);
-        self.fit(known, param, param.name.span)
+        let value = self.fit(Scalar::caused(given, causes), param, param.name.span)?;
+        self.scopes[s].own_params[i] = Some(value.clone());
+        Ok(value)
     }
 
     /// Makes a given value the parameter's own kind, or says why it does not fit.
@@ -272,7 +276,7 @@ impl<'p> Lowering<'p> {
     }
 
     /// `size(x)`, `count(x)`, `capacity(x)`, `has(x)`, `device(x)`.
-    fn measure(&mut self, s: ScopeId, f: Function, path: &str, span: Span) -> Result<(Value, Causes)> {
+    fn measure(&mut self, s: ScopeId, f: Function, path: &str, span: Span) -> Result<(Value, CauseSet)> {
         match f {
             Function::Has => return self.has(s, path, span),
             Function::Device => return self.device_has(s, path, span),
@@ -287,9 +291,7 @@ impl<'p> Lowering<'p> {
             (Function::Count, Entity::Input { .. }) => {
                 let scalar = self.resolve(s, &format!("{path}.count"), span)?;
                 match scalar {
-                    Entity::Scalar(Scalar { value: UniformValue::Known(value), causes }) => {
-                        Ok((value, std::sync::Arc::unwrap_or_clone(causes)))
-                    }
+                    Entity::Scalar(Scalar { value: UniformValue::Known(value), causes }) => Ok((value, causes)),
                     _ => refuse(self, "has no count"),
                 }
             }
@@ -323,9 +325,9 @@ impl<'p> Lowering<'p> {
         }
     }
 
-    fn has(&mut self, s: ScopeId, path: &str, span: Span) -> Result<(Value, Causes)> {
+    fn has(&mut self, s: ScopeId, path: &str, span: Span) -> Result<(Value, CauseSet)> {
         let head = path.split('.').next().unwrap_or(path);
-        let causes = Causes { inputs: [head.to_owned()].into(), ..Causes::default() };
+        let causes = self.causes.set(CauseKind::Input, head);
         let graph = self.scopes[s].graph.clone();
         let Some(input) = graph.inputs.iter().find(|i| i.name.value == head) else {
             let names: Vec<&str> = graph.inputs.iter().map(|i| i.name.value.as_str()).collect();
@@ -347,11 +349,11 @@ impl<'p> Lowering<'p> {
         Ok((Value::Bool(there), causes))
     }
 
-    fn device_has(&mut self, s: ScopeId, feature: &str, span: Span) -> Result<(Value, Causes)> {
+    fn device_has(&mut self, s: ScopeId, feature: &str, span: Span) -> Result<(Value, CauseSet)> {
         let known = wgpu_types::Features::all();
         let found = known.iter_names().find(|(name, _)| name.eq_ignore_ascii_case(feature));
         match found {
-            Some((_, flag)) => Ok((Value::Bool(self.request.features.contains(flag)), Causes::default())),
+            Some((_, flag)) => Ok((Value::Bool(self.request.features.contains(flag)), CauseSet::default())),
             None => {
                 let names: Vec<String> = known.iter_names().map(|(name, _)| name.to_ascii_lowercase()).collect();
                 let diagnostic =
@@ -363,8 +365,8 @@ impl<'p> Lowering<'p> {
     }
 
     /// A live scalar by its canonical name.
-    pub(super) fn live_field(&self, root: &str, field: &str, span: Span) -> Scalar {
-        live(&format!("{root}.{field}"), span)
+    pub(super) fn live_field(&mut self, root: &str, field: &str, span: Span) -> Scalar {
+        self.live(&format!("{root}.{field}"), span)
     }
 }
 

@@ -1,10 +1,10 @@
 //! `Steps`: what happens over time, as a contiguous range of passes.
 
 use super::names::join;
-use super::{Lowering, Result, ScopeId, VarId, fault, traced};
+use super::{CauseKind, CauseSet, Lowering, Result, ScopeId, VarId, fault, traced};
 use crate::diagnostic::{Code, Span};
 use crate::graph::model as ast;
-use crate::plan::model::{Causes, ObjectRef, Steps};
+use crate::plan::model::{ObjectRef, Steps};
 
 impl Lowering<'_> {
     pub(super) fn steps(&mut self, s: ScopeId, steps: &ast::Steps, word: Span) -> Result<()> {
@@ -12,7 +12,7 @@ impl Lowering<'_> {
             let diagnostic = fault(Code::STATE, "`Steps` inside `Steps`", word, "the inner one");
             return Err(traced(diagnostic, &self.scopes[s].trace));
         }
-        let mut causes = Causes::default();
+        let mut causes = CauseSet::default();
         let rate = match &steps.rate {
             Some(expr) => {
                 let (rate, depends) = self.number(s, expr)?;
@@ -43,7 +43,7 @@ impl Lowering<'_> {
         self.steps.push(Steps { path, rate, passes: first..first, asked, key: 0, state: Vec::new() });
         let before: Vec<ObjectRef> = self.vars.iter().map(|v| v.now).collect();
         self.in_steps = Some(index);
-        causes.live.insert("step".to_owned());
+        causes.add(&self.causes.set(CauseKind::Live, "step"));
         self.structure.push(causes);
         self.nodes(s, &steps.passes);
         self.structure.pop();

@@ -2,10 +2,10 @@
 
 use super::nodes::Draft;
 use super::view::whole_write;
-use super::{Lowering, Place, Result, ScopeId, fault, traced};
+use super::{CauseSet, Lowering, Place, Result, ScopeId, fault, traced};
 use crate::diagnostic::Code;
 use crate::graph::model as ast;
-use crate::plan::model::{Access, Causes, ObjectKind, PassKind};
+use crate::plan::model::{Access, ObjectKind, PassKind};
 
 impl Lowering<'_> {
     pub(super) fn clear(&mut self, s: ScopeId, clear: &ast::Clear) -> Result<Draft> {
@@ -27,8 +27,12 @@ impl Lowering<'_> {
     }
 
     /// One value for all channels, or four.
-    pub(super) fn clear_value(&mut self, s: ScopeId, value: &[crate::graph::expr::Expr]) -> Result<([f64; 4], Causes)> {
-        let mut causes = Causes::default();
+    pub(super) fn clear_value(
+        &mut self,
+        s: ScopeId,
+        value: &[crate::graph::expr::Expr],
+    ) -> Result<([f64; 4], CauseSet)> {
+        let mut causes = CauseSet::default();
         let mut channels = Vec::new();
         for expr in value {
             let (value, depends) = self.known(s, expr)?;

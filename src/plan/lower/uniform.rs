@@ -1,5 +1,7 @@
 //! Packing uniforms and pipeline constants: every member gets the scalar of its name.
 
+use std::sync::Arc;
+
 use wgpu_types::BufferUsages;
 
 use super::bind::{Feed, Stages, place_of};
@@ -8,7 +10,7 @@ use super::names::Entity;
 use super::nodes::{Draft, shown};
 use super::{Lowering, Result, Scalar, ScopeId, fault, traced};
 use crate::diagnostic::{Code, Diagnostic, Span};
-use crate::graph::expr::ExprKind;
+use crate::graph::expr::{Expr, ExprKind};
 use crate::graph::model::{self as ast, Name};
 use crate::graph::value::Value;
 use crate::plan::fields::{self, FieldType};
@@ -21,12 +23,15 @@ enum Prefix {
     None,
     /// Fields of an input of the root, by the name it has here.
     Input {
-        root: String,
+        root: Arc<str>,
         kind: ast::InputKind,
     },
     /// Outputs of a part: `grid` and `cell_size` is `grid.cell_size`.
     Use(String),
 }
+
+/// A scalar, and the path that it was found by.
+type Named = (Option<Arc<str>>, Scalar);
 
 impl Lowering<'_> {
     /// A `var<uniform>`: a buffer that a shader wrote, or a block that the host packs.
@@ -93,16 +98,16 @@ impl Lowering<'_> {
         draft: &mut Draft,
     ) -> Result<UniformMember> {
         let found = match bound_expr(place.bind, &member.name) {
-            Some(expr) => Some((path_of(&expr), self.scalar(s, &expr)?)),
+            Some(expr) => Some((path_of(expr), self.scalar(s, expr)?)),
             None => self.named(s, prefix, member, place.stages.at)?,
         };
         let Some((path, scalar)) = found else { return Err(self.unfed(s, place, prefix, member)) };
-        let scalar = self.word_as_index(s, &path, scalar);
+        let scalar = self.word_as_index(s, path.as_deref(), scalar);
         if !fits(&scalar.value, &member.ty) {
             return Err(self.misfit(s, place, member.span, &member.name, &member.ty.wgsl(), &scalar));
         }
         if self.depends_on_value(&scalar, &member.ty) {
-            self.structural.extend(scalar.causes.params.iter().cloned());
+            self.structural.add(&scalar.causes);
         }
         draft.causes.add(&scalar.causes);
         Ok(UniformMember {
@@ -114,14 +119,14 @@ impl Lowering<'_> {
     }
 
     /// The scalar of a member's name.
-    fn named(&mut self, s: ScopeId, prefix: &Prefix, member: &Member, at: Span) -> Result<Option<(String, Scalar)>> {
+    fn named(&mut self, s: ScopeId, prefix: &Prefix, member: &Member, at: Span) -> Result<Option<Named>> {
         match prefix {
             Prefix::Input { root, kind } if input_fields(kind).any(|field| field == member.name) => {
                 if !matches!(kind, ast::InputKind::Particles { .. } | ast::InputKind::Meshes { .. }) {
-                    return Ok(Some((String::new(), self.live_field(root, &member.name, member.span))));
+                    return Ok(Some((None, self.live_field(root, &member.name, member.span))));
                 }
                 if let Entity::Scalar(scalar) = self.resolve(0, &format!("{root}.{}", member.name), member.span)? {
-                    return Ok(Some((String::new(), scalar)));
+                    return Ok(Some((None, scalar)));
                 }
             }
             Prefix::Use(name) => {
@@ -129,13 +134,13 @@ impl Lowering<'_> {
                 let output = self.scopes[child].graph.outputs.iter().any(|o| o.name.value == member.name);
                 let path = format!("{name}.{}", member.name);
                 if output && let Entity::Scalar(scalar) = self.resolve(s, &path, member.span)? {
-                    return Ok(Some((path, scalar)));
+                    return Ok(Some((Some(path.into()), scalar)));
                 }
             }
             _ => {}
         }
         match self.resolve_wgsl(s, &member.name, member.span)? {
-            Some((path, Entity::Scalar(scalar))) => Ok(Some((path, scalar))),
+            Some((path, Entity::Scalar(scalar))) => Ok(Some((Some(path), scalar))),
             Some((path, other)) => {
                 let message =
                     format!("the member `{}` wants a scalar, and `{path}` is {}", member.name, self.what(&other));
@@ -193,8 +198,7 @@ impl Lowering<'_> {
 
     /// The one parameter that a value depends on.
     fn only_param(&self, scalar: &Scalar) -> Option<&Param> {
-        let path = scalar.causes.params.first().filter(|_| scalar.causes.params.len() == 1)?;
-        self.params.get(path)
+        self.params.get(self.causes.only_param(&scalar.causes)?)
     }
 
     /// Whether other values of the parameter behind a whole number may not fit where this one does.
@@ -206,9 +210,9 @@ impl Lowering<'_> {
     }
 
     /// WGSL sees a `Choice` as the index of its word.
-    fn word_as_index(&mut self, s: ScopeId, path: &str, scalar: Scalar) -> Scalar {
+    fn word_as_index(&mut self, s: ScopeId, path: Option<&str>, scalar: Scalar) -> Scalar {
         let UniformValue::Known(Value::Word(word)) = &scalar.value else { return scalar };
-        let words = self.choice_behind(s, path);
+        let words = path.map_or_else(Vec::new, |path| self.choice_behind(s, path));
         match words.iter().position(|w| w == word) {
             Some(index) => Scalar { value: UniformValue::Known(Value::Int(index as i64)), ..scalar },
             None => scalar,
@@ -257,9 +261,9 @@ impl Lowering<'_> {
         draft: &mut Draft,
     ) -> Result<Option<f64>> {
         let found = match bound_expr(bind, &constant.name) {
-            Some(expr) => Some((path_of(&expr), self.scalar(s, &expr)?)),
+            Some(expr) => Some((path_of(expr), self.scalar(s, expr)?)),
             None => match self.resolve_wgsl(s, &constant.name, constant.span)? {
-                Some((path, Entity::Scalar(scalar))) => Some((path, scalar)),
+                Some((path, Entity::Scalar(scalar))) => Some((Some(path), scalar)),
                 _ => None,
             },
         };
@@ -273,7 +277,7 @@ impl Lowering<'_> {
                 .hint(format!("say `bind: {{\"{}\": \"...\"}}`, or give it a default", constant.name));
             return Err(traced(diagnostic, &self.scopes[s].trace));
         };
-        let scalar = self.word_as_index(s, &path, scalar);
+        let scalar = self.word_as_index(s, path.as_deref(), scalar);
         let UniformValue::Known(value) = &scalar.value else {
             let message = format!("the constant `{}` must be known when planning", constant.name);
             let at = place_of(bind, &constant.name).unwrap_or(stages.at);
@@ -285,7 +289,7 @@ impl Lowering<'_> {
         let number = constant_value(value, constant.scalar);
         match number {
             Some(number) => {
-                self.structural.extend(scalar.causes.params.iter().cloned());
+                self.structural.add(&scalar.causes);
                 draft.causes.add(&scalar.causes);
                 Ok(Some(number))
             }
@@ -309,9 +313,9 @@ impl Lowering<'_> {
 }
 
 /// A `bind` entry as an expression; a word of a `Choice` parameter stays a name.
-fn bound_expr(bind: &[(Name, ast::Bound)], name: &str) -> Option<crate::graph::expr::Expr> {
+fn bound_expr<'b>(bind: &'b [(Name, ast::Bound)], name: &str) -> Option<&'b Expr> {
     bind.iter().find(|(n, _)| n.value == name).and_then(|(_, bound)| match bound {
-        ast::Bound::Expr(expr) => Some(expr.clone()),
+        ast::Bound::Expr(expr) => Some(expr),
         ast::Bound::View(_) => None,
     })
 }
@@ -332,10 +336,10 @@ fn constant_value(value: &Value, scalar: Option<reflect::Scalar>) -> Option<f64>
 }
 
 /// The path that an expression is, if it is nothing else.
-fn path_of(expr: &crate::graph::expr::Expr) -> String {
+fn path_of(expr: &Expr) -> Option<Arc<str>> {
     match &expr.kind {
-        ExprKind::Name(path) => path.clone(),
-        _ => String::new(),
+        ExprKind::Name(path) => Some(path.as_str().into()),
+        _ => None,
     }
 }
 

@@ -4,13 +4,13 @@ use wgpu_types::{BufferUsages, Features, TextureFormatFeatureFlags, TextureUsage
 
 use super::names::{Entity, join};
 use super::nodes::amount;
-use super::{Building, Lowering, Result, ScopeId, Var, VarId, fault, traced};
+use super::{Building, CauseKind, CauseSet, Lowering, Result, ScopeId, Var, VarId, fault, traced};
 use crate::diagnostic::{Code, Span};
 use crate::format::{self, TextureFormat};
 use crate::graph::expr::Expr;
 use crate::graph::model::{Mips, Node, NodeKind, ResourceKind, Sp, ViewDimension};
 use crate::graph::value::Value;
-use crate::plan::model::{Buffer, Causes, Object, ObjectKind, ObjectRef, Origin, Texture};
+use crate::plan::model::{Buffer, Object, ObjectKind, ObjectRef, Origin, Texture};
 
 /// No device has larger textures; layers are tracked one by one.
 const MAX_EDGE: i64 = 65_536;
@@ -67,7 +67,7 @@ impl Lowering<'_> {
     }
 
     /// Resources are the same in every iteration: they see no counter of a loop.
-    fn describe_outside(&mut self, s: ScopeId, kind: &ResourceKind, at: Span) -> Result<(ObjectKind, bool, Causes)> {
+    fn describe_outside(&mut self, s: ScopeId, kind: &ResourceKind, at: Span) -> Result<(ObjectKind, bool, CauseSet)> {
         let counters = std::mem::take(&mut self.scopes[s].counters);
         self.forget_lets(s);
         let made = self.describe(s, kind, at);
@@ -81,7 +81,7 @@ impl Lowering<'_> {
         })
     }
 
-    fn describe(&mut self, s: ScopeId, kind: &ResourceKind, at: Span) -> Result<(ObjectKind, bool, Causes)> {
+    fn describe(&mut self, s: ScopeId, kind: &ResourceKind, at: Span) -> Result<(ObjectKind, bool, CauseSet)> {
         match kind {
             ResourceKind::Buffer { items } => {
                 let (items, causes) = self.item_count(s, items, "the number of items")?;
@@ -92,7 +92,9 @@ impl Lowering<'_> {
                 let name = self.scopes[s].graph.resources.iter().find(|r| r.name.span == at);
                 let path = join(&self.scopes[s].path, name.map_or("", |r| r.name.value.as_str()));
                 let items = self.request.capacities.get(&path).copied().unwrap_or(declared as u64);
-                causes.inputs.extend(self.request.capacities.contains_key(&path).then(|| path.clone()));
+                if self.request.capacities.contains_key(&path) {
+                    causes.add(&self.causes.set(CauseKind::Input, &path));
+                }
                 Ok((buffer(items, true), false, causes))
             }
             ResourceKind::Like(name) => match self.resolve(s, &name.value, name.span)? {
@@ -118,7 +120,7 @@ impl Lowering<'_> {
     }
 
     /// How many items a buffer has.
-    fn item_count(&mut self, s: ScopeId, expr: &Expr, what: &str) -> Result<(i64, Causes)> {
+    fn item_count(&mut self, s: ScopeId, expr: &Expr, what: &str) -> Result<(i64, CauseSet)> {
         let (n, causes) = self.whole(s, expr, what, 0)?;
         if n > MAX_ITEMS {
             let message = format!("{what} must be at most {MAX_ITEMS}, and is {n}");
@@ -138,7 +140,7 @@ impl Lowering<'_> {
         layers_given: Option<&Expr>,
         mips: Option<&Mips>,
         samples_given: Option<&Expr>,
-    ) -> Result<(ObjectKind, bool, Causes)> {
+    ) -> Result<(ObjectKind, bool, CauseSet)> {
         let is_3d = dimension == ViewDimension::D3;
         let (edges, mut causes) = self.edges(s, format.span, size, if is_3d { 3 } else { 2 })?;
         let mut count = |low: &mut Self, expr: Option<&Expr>, what: &str, default: i64| -> Result<i64> {
@@ -196,8 +198,8 @@ impl Lowering<'_> {
     }
 
     /// The edges of a texture in texels: as many as `wanted`, each from 1 to what devices have.
-    fn edges(&mut self, s: ScopeId, at: Span, size: &[Expr], wanted: usize) -> Result<(Vec<i64>, Causes)> {
-        let mut causes = Causes::default();
+    fn edges(&mut self, s: ScopeId, at: Span, size: &[Expr], wanted: usize) -> Result<(Vec<i64>, CauseSet)> {
+        let mut causes = CauseSet::default();
         let mut edges = Vec::new();
         for expr in size {
             let (value, depends) = self.known(s, expr)?;

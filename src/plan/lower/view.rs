@@ -2,10 +2,10 @@
 
 use super::names::Entity;
 use super::nodes::amount;
-use super::{Lowering, Result, ScopeId, fault, traced};
+use super::{CauseSet, Lowering, Result, ScopeId, fault, traced};
 use crate::diagnostic::Code;
 use crate::graph::model as ast;
-use crate::plan::model::{Access, Causes, ObjectKind, View};
+use crate::plan::model::{Access, ObjectKind, View};
 use crate::shader::reflect::TextureDimension;
 
 /// A view with what it was asked for, before it becomes part of a pass.
@@ -14,7 +14,7 @@ pub(super) struct Viewed {
     /// Whether the author named a mip or a layer.
     pub mip_said: bool,
     pub layer_said: bool,
-    pub causes: Causes,
+    pub causes: CauseSet,
 }
 
 impl Lowering<'_> {
@@ -34,7 +34,7 @@ impl Lowering<'_> {
             }
         };
         let object = self.vars[var].now;
-        let mut causes = Causes::default();
+        let mut causes = CauseSet::default();
         let (mips, layers, dimension) = match &self.object(object).object.kind {
             ObjectKind::Texture(t) => {
                 (t.mips, if t.is_3d { 1 } else { t.layers }, natural_dimension(t.is_3d, t.layers))
