@@ -12,6 +12,7 @@ mod check {
     mod mutations;
     mod requests;
     mod shipped;
+    mod shortcuts;
 
     use std::path::Path;
 

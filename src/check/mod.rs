@@ -16,13 +16,39 @@ use crate::diagnostic::{Code, Diagnostic, Diagnostics, Severity, Span};
 use crate::parallel::in_parallel;
 use crate::plan::model::Request;
 use crate::plan::needs::feature_names;
-use crate::plan::{Findings, examine};
+use crate::plan::{Findings, examine, instantiate_stand_in};
 use crate::program::Program;
 
 /// Everything that is wrong with a program, and what is odd about it in every variant.
 pub fn check(program: &Program) -> Diagnostics {
-    let device = Device::anything();
-    let (mut found, base) = check_with(program, &device);
+    check_in(program, Way::Short)
+}
+
+/// The same the long way, for comparison: whole plans, and every parameter by itself at every
+/// value that is tried, whether or not anything but a uniform's content hangs on it.
+#[doc(hidden)]
+pub fn check_at_length(program: &Program) -> Diagnostics {
+    check_in(program, Way::Long)
+}
+
+/// How much is gone through to find everything.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Way {
+    Short,
+    Long,
+}
+
+impl Way {
+    fn examine(self, program: &Program, request: &Request) -> Result<Findings, Diagnostics> {
+        match self {
+            Way::Short => examine(program, request),
+            Way::Long => instantiate_stand_in(program, request).map(Findings::from),
+        }
+    }
+}
+
+fn check_in(program: &Program, way: Way) -> Diagnostics {
+    let (mut found, base) = check_with(program, &Device::anything(), way);
     base.and_then(|base| beyond_defaults(program, &base)).into_iter().for_each(|note| found.push(note));
     found
 }
@@ -30,18 +56,18 @@ pub fn check(program: &Program) -> Diagnostics {
 /// The same for a device: what it lacks is an error with the parameters' defaults, and a warning
 /// with other values.
 pub fn check_on(program: &Program, device: &Device) -> Diagnostics {
-    let (found, _) = check_with(program, device);
+    let (found, _) = check_with(program, device, Way::Short);
     let is_default = |d: &Diagnostic| !d.hints.iter().any(|hint| hint.starts_with(FOUND_WITH));
     let explained = found.0.into_iter().map(|d| (is_default(&d), d)).map(|(at, d)| device.explain(d, at));
     Diagnostics(explained.collect())
 }
 
-fn check_with(program: &Program, device: &Device) -> (Diagnostics, Option<Findings>) {
+fn check_with(program: &Program, device: &Device, way: Way) -> (Diagnostics, Option<Findings>) {
     let mut found = passes::names(program);
     found.extend(clashes::clashes(program));
     found.extend(branches::differing(program));
     let base = variants::base(program, device);
-    let at_base = match examine(program, &base) {
+    let at_base = match way.examine(program, &base) {
         Ok(at_base) => at_base,
         // The variants would only say the same again.
         Err(diagnostics) => {
@@ -53,8 +79,8 @@ fn check_with(program: &Program, device: &Device) -> (Diagnostics, Option<Findin
         }
     };
     let mut odd = oddities(&at_base);
-    let variants = variants::others(program, &base, &at_base);
-    for outcome in in_parallel(&variants, &|variant| outcomes(program, variant)).into_iter().flatten() {
+    let variants = variants::others(program, &base, &at_base, way);
+    for outcome in in_parallel(&variants, &|variant| outcomes(program, variant, way)).into_iter().flatten() {
         match outcome {
             Ok(now) => odd.retain(|d| now.iter().any(|n| n.id == d.id && n.labels == d.labels)),
             Err((diagnostics, said)) => {
@@ -72,10 +98,12 @@ fn check_with(program: &Program, device: &Device) -> (Diagnostics, Option<Findin
 type Outcome<'a> = Result<Vec<Diagnostic>, (Diagnostics, &'a str)>;
 
 /// The outcome of a variant; if it is several things at once and fails, that of each.
-fn outcomes<'a>(program: &Program, variant: &'a Variant) -> Vec<Outcome<'a>> {
-    match examine(program, &variant.request) {
+fn outcomes<'a>(program: &Program, variant: &'a Variant, way: Way) -> Vec<Outcome<'a>> {
+    match way.examine(program, &variant.request) {
         Ok(found) => vec![Ok(oddities(&found))],
-        Err(_) if !variant.each.is_empty() => variant.each.iter().flat_map(|each| outcomes(program, each)).collect(),
+        Err(_) if !variant.each.is_empty() => {
+            variant.each.iter().flat_map(|each| outcomes(program, each, way)).collect()
+        }
         Err(diagnostics) => vec![Err((diagnostics, &variant.said))],
     }
 }

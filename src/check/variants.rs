@@ -1,5 +1,6 @@
 //! The stand-in scene, and the variants of it that are checked.
 
+use super::Way;
 use super::device::Device;
 use crate::graph::model::{InputDefault, InputKind, ParamKind};
 use crate::graph::rows::Row;
@@ -94,11 +95,11 @@ impl Variant {
 
 /// One thing at a time otherwise. `at_base` is what was found there: whether a parameter's value fits
 /// where a uniform holds it was seen there, so that only parameters on which more hangs are tried.
-pub(super) fn others(program: &Program, base: &Request, at_base: &Findings) -> Vec<Variant> {
+pub(super) fn others(program: &Program, base: &Request, at_base: &Findings, way: Way) -> Vec<Variant> {
     let mut all = Vec::new();
     let mut in_arithmetic = Vec::new();
     for param in &at_base.params {
-        if at_base.structural.contains(&param.path) {
+        if way == Way::Long || at_base.structural.contains(&param.path) {
             all.extend(other_values(param).into_iter().map(|value| Variant::param(base, param, value)));
         } else if at_base.arithmetic.contains(&param.path) {
             in_arithmetic.push(param);

@@ -4,7 +4,7 @@
 use std::collections::BTreeSet;
 
 use super::lower::Lowering;
-use super::model::{Culled, Needs, Param, Request};
+use super::model::{Culled, Needs, Param, Plan, Request};
 use super::{Lowered, insert, lowered, needs, state, units};
 use crate::diagnostic::{Diagnostics, Span};
 use crate::program::Program;
@@ -21,6 +21,20 @@ pub struct Findings {
     /// As those of a plan.
     pub structural: BTreeSet<String>,
     pub arithmetic: BTreeSet<String>,
+}
+
+impl From<Plan> for Findings {
+    fn from(plan: Plan) -> Self {
+        Self {
+            passes: plan.passes.iter().map(|pass| pass.span).collect(),
+            warnings: plan.warnings,
+            culled: plan.culled,
+            needs: plan.needs,
+            params: plan.params,
+            structural: plan.structural,
+            arithmetic: plan.arithmetic,
+        }
+    }
 }
 
 /// What [`super::instantiate_stand_in`] finds, without making the plan.

@@ -161,9 +161,8 @@ fn conflict(lowering: &Lowering<'_>, flat: &FlatPass) -> Option<(ObjectRef, Box<
     let accesses = &flat.pass.accesses;
     for (i, a) in accesses.iter().enumerate() {
         for (j, b) in accesses.iter().enumerate().skip(i + 1) {
-            let same = a.object == b.object;
-            let exclusive = a.write || b.write || writable(flat, i) || writable(flat, j);
-            if same && exclusive && overlap(&a.mips, &b.mips) && overlap(&a.layers, &b.layers) {
+            let overlap = a.object == b.object && overlap(&a.mips, &b.mips) && overlap(&a.layers, &b.layers);
+            if overlap && (a.write || b.write || writable(flat, i) || writable(flat, j)) {
                 return Some((a.object, report_conflict(lowering, flat, i, j)));
             }
         }

@@ -11,14 +11,20 @@ use crate::shader::reflect::Stage;
 
 /// The largest amount of each thing, and the place that asks for it.
 #[derive(Default)]
-struct Wanted(BTreeMap<&'static str, (u64, Span, Vec<Span>)>);
+struct Wanted<'a>([(u64, Option<(Span, &'a [Span])>); LIMITS.len()]);
 
-impl Wanted {
-    fn at_least(&mut self, name: &'static str, amount: u64, span: Span, trace: &[Span]) {
-        let entry = self.0.entry(name).or_insert((0, span, Vec::new()));
+impl<'a> Wanted<'a> {
+    fn at_least(&mut self, limit: Limit, amount: u64, span: Span, trace: &'a [Span]) {
+        let entry = &mut self.0[limit as usize];
         if amount > entry.0 {
-            *entry = (amount, span, trace.to_vec());
+            *entry = (amount, Some((span, trace)));
         }
+    }
+
+    /// By the limits' names.
+    fn sorted(&self) -> BTreeMap<&'static str, (u64, Span, &'a [Span])> {
+        let asked = LIMITS.iter().zip(&self.0);
+        asked.filter_map(|(name, (amount, at))| at.map(|(span, trace)| (*name, (*amount, span, trace)))).collect()
     }
 }
 
@@ -35,14 +41,14 @@ pub(super) fn needs(lowering: &Lowering<'_>, touched: &[bool]) -> (Needs, Diagno
     let mut found = Diagnostics::new();
     let mut limits = Vec::new();
     let (defaults, device) = (Limits::default(), &lowering.request.limits);
-    for (name, (amount, span, trace)) in &wanted.0 {
-        if *amount > limit(&defaults, name) {
-            limits.push(((*name).to_owned(), *amount, limit(&defaults, name)));
+    for (name, (amount, span, trace)) in wanted.sorted() {
+        if amount > limit(&defaults, name) {
+            limits.push((name.to_owned(), amount, limit(&defaults, name)));
         }
         let has = limit(device, name);
-        if *amount > has {
+        if amount > has {
             let message = format!("the device has {has} of `{name}`, and {amount} are needed");
-            let diagnostic = fault(Code::DEVICE_LIMIT, message, *span, format!("needs {amount}"));
+            let diagnostic = fault(Code::DEVICE_LIMIT, message, span, format!("needs {amount}"));
             found.push(*traced(diagnostic, trace));
         }
     }
@@ -64,28 +70,28 @@ pub fn feature_names(features: Features) -> Vec<String> {
     features.iter_names().map(|(name, _)| name.to_ascii_lowercase()).collect()
 }
 
-fn of_object(wanted: &mut Wanted, object: &Object) {
+fn of_object(wanted: &mut Wanted<'_>, object: &Object) {
     let at = object.span;
     match &object.kind {
         ObjectKind::Texture(t) if t.is_3d => {
             let edge = t.width.max(t.height).max(t.layers);
-            wanted.at_least("max_texture_dimension_3d", u64::from(edge), at, &[]);
+            wanted.at_least(Limit::max_texture_dimension_3d, u64::from(edge), at, &[]);
         }
         ObjectKind::Texture(t) => {
-            wanted.at_least("max_texture_dimension_2d", u64::from(t.width.max(t.height)), at, &[]);
-            wanted.at_least("max_texture_array_layers", u64::from(t.layers), at, &[]);
+            wanted.at_least(Limit::max_texture_dimension_2d, u64::from(t.width.max(t.height)), at, &[]);
+            wanted.at_least(Limit::max_texture_array_layers, u64::from(t.layers), at, &[]);
         }
-        ObjectKind::Buffer(b) => wanted.at_least("max_buffer_size", b.bytes(), at, &[]),
+        ObjectKind::Buffer(b) => wanted.at_least(Limit::max_buffer_size, b.bytes(), at, &[]),
     }
 }
 
-fn of_pass(wanted: &mut Wanted, lowering: &Lowering<'_>, pass: &Pass, word: Span, trace: &[Span]) {
+fn of_pass<'a>(wanted: &mut Wanted<'a>, lowering: &Lowering<'_>, pass: &Pass, word: Span, trace: &'a [Span]) {
     let shader = match &pass.kind {
         PassKind::Compute { shader, .. } => shader,
         PassKind::Draw(draw) => {
-            wanted.at_least("max_color_attachments", draw.color.len() as u64, word, trace);
+            wanted.at_least(Limit::max_color_attachments, draw.color.len() as u64, word, trace);
             let bytes: u32 = draw.color.iter().filter_map(|t| t.format.target_pixel_byte_cost()).sum();
-            wanted.at_least("max_color_attachment_bytes_per_sample", u64::from(bytes), word, trace);
+            wanted.at_least(Limit::max_color_attachment_bytes_per_sample, u64::from(bytes), word, trace);
             &draw.shader
         }
         _ => return,
@@ -96,54 +102,80 @@ fn of_pass(wanted: &mut Wanted, lowering: &Lowering<'_>, pass: &Pass, word: Span
         let Some(entry) = module.stage(Stage::Compute).find(|e| e.name == *name) else { continue };
         let Ok(size) = module.workgroup_size(entry, &shader.constants) else { continue };
         let threads = size.iter().map(|n| u64::from(*n)).product();
-        wanted.at_least("max_compute_invocations_per_workgroup", threads, entry.span, trace);
-        wanted.at_least("max_compute_workgroup_size_x", u64::from(size[0]), entry.span, trace);
-        wanted.at_least("max_compute_workgroup_size_y", u64::from(size[1]), entry.span, trace);
-        wanted.at_least("max_compute_workgroup_size_z", u64::from(size[2]), entry.span, trace);
-        wanted.at_least("max_compute_workgroup_storage_size", u64::from(entry.workgroup_memory), entry.span, trace);
+        wanted.at_least(Limit::max_compute_invocations_per_workgroup, threads, entry.span, trace);
+        wanted.at_least(Limit::max_compute_workgroup_size_x, u64::from(size[0]), entry.span, trace);
+        wanted.at_least(Limit::max_compute_workgroup_size_y, u64::from(size[1]), entry.span, trace);
+        wanted.at_least(Limit::max_compute_workgroup_size_z, u64::from(size[2]), entry.span, trace);
+        wanted.at_least(
+            Limit::max_compute_workgroup_storage_size,
+            u64::from(entry.workgroup_memory),
+            entry.span,
+            trace,
+        );
     }
 }
 
-fn of_bindings(wanted: &mut Wanted, lowering: &Lowering<'_>, shader: &ShaderUse, word: Span, trace: &[Span]) {
+fn of_bindings<'a>(
+    wanted: &mut Wanted<'a>,
+    lowering: &Lowering<'_>,
+    shader: &ShaderUse,
+    word: Span,
+    trace: &'a [Span],
+) {
     for stage in [ShaderStages::COMPUTE, ShaderStages::VERTEX, ShaderStages::FRAGMENT] {
-        let mut counts: BTreeMap<&'static str, u64> = BTreeMap::new();
+        let mut counts = [0; LIMITS.len()];
         for binding in shader.bindings.iter().filter(|b| b.stages.contains(stage)) {
             let (name, size) = match &binding.bound {
                 Bound::Uniform { block } => (
-                    "max_uniform_buffers_per_shader_stage",
-                    Some(("max_uniform_buffer_binding_size", u64::from(lowering.uniforms[*block].size))),
+                    Limit::max_uniform_buffers_per_shader_stage,
+                    Some((Limit::max_uniform_buffer_binding_size, u64::from(lowering.uniforms[*block].size))),
                 ),
                 Bound::UniformBuffer { buffer } => {
                     let size = super::memory::bytes(&lowering.object(*buffer).object.kind);
-                    ("max_uniform_buffers_per_shader_stage", Some(("max_uniform_buffer_binding_size", size)))
+                    (Limit::max_uniform_buffers_per_shader_stage, Some((Limit::max_uniform_buffer_binding_size, size)))
                 }
                 Bound::Storage { buffer, .. } => {
                     let size = super::memory::bytes(&lowering.object(*buffer).object.kind);
-                    ("max_storage_buffers_per_shader_stage", Some(("max_storage_buffer_binding_size", size)))
+                    (Limit::max_storage_buffers_per_shader_stage, Some((Limit::max_storage_buffer_binding_size, size)))
                 }
                 Bound::Material { bytes, .. } => (
-                    "max_uniform_buffers_per_shader_stage",
-                    Some(("max_uniform_buffer_binding_size", u64::from(*bytes))),
+                    Limit::max_uniform_buffers_per_shader_stage,
+                    Some((Limit::max_uniform_buffer_binding_size, u64::from(*bytes))),
                 ),
                 Bound::Texture { .. } | Bound::MaterialTexture { .. } => {
-                    ("max_sampled_textures_per_shader_stage", None)
+                    (Limit::max_sampled_textures_per_shader_stage, None)
                 }
-                Bound::StorageTexture { .. } => ("max_storage_textures_per_shader_stage", None),
-                Bound::Sampler { .. } | Bound::MaterialSampler { .. } => ("max_samplers_per_shader_stage", None),
+                Bound::StorageTexture { .. } => (Limit::max_storage_textures_per_shader_stage, None),
+                Bound::Sampler { .. } | Bound::MaterialSampler { .. } => (Limit::max_samplers_per_shader_stage, None),
             };
-            *counts.entry(name).or_default() += 1;
+            counts[name as usize] += 1;
             if let Some((limit, size)) = size {
                 wanted.at_least(limit, size, word, trace);
             }
         }
-        for (name, count) in counts {
-            wanted.at_least(name, count, word, trace);
+        for limit in BINDINGS {
+            wanted.at_least(limit, counts[limit as usize], word, trace);
         }
     }
 }
 
+/// Limits on how many bindings of a kind a stage has.
+const BINDINGS: [Limit; 5] = [
+    Limit::max_uniform_buffers_per_shader_stage,
+    Limit::max_storage_buffers_per_shader_stage,
+    Limit::max_sampled_textures_per_shader_stage,
+    Limit::max_storage_textures_per_shader_stage,
+    Limit::max_samplers_per_shader_stage,
+];
+
 macro_rules! limits {
     ($($name:ident),* $(,)?) => {
+        #[derive(Clone, Copy)]
+        #[expect(non_camel_case_types, reason = "called as WebGPU calls them")]
+        enum Limit {
+            $($name),*
+        }
+
         /// Names of the limits that plans are measured by.
         pub const LIMITS: &[&str] = &[$(stringify!($name)),*];
 

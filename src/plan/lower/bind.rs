@@ -8,7 +8,7 @@ use super::meshes::MeshInput;
 use super::names::Entity;
 use super::nodes::Draft;
 use super::view::Viewed;
-use super::{Lowering, Place, Result, ScopeId, fault, traced};
+use super::{Lowering, Packed, Place, Result, ScopeId, fault, traced};
 use crate::diagnostic::{Code, Diagnostic, Label, Span};
 use crate::format::{self, SampleKind};
 use crate::graph::expr::ExprKind;
@@ -45,9 +45,10 @@ impl Lowering<'_> {
         draft: &mut Draft,
     ) -> ShaderUse {
         let module = self.module(&stages.module);
-        let mut bindings = Vec::new();
-        for wanted in self.wanted(s, stages, bind) {
-            let bound = self.feed_one(s, stages, bind, &wanted, draft);
+        let wanted = self.wanted(s, stages, bind);
+        let mut bindings = Vec::with_capacity(wanted.len());
+        for wanted in wanted {
+            let bound = self.feed_again(s, stages, bind, &wanted, draft);
             if let Some(bound) = self.report(bound) {
                 bindings.push(Binding {
                     binding: wanted.global.binding,
@@ -135,6 +136,34 @@ impl Lowering<'_> {
             },
             None => Ok(self.resolve_wgsl(s, &global.name, global.span)?.map(|(_, entity)| (entity, None))),
         }
+    }
+
+    /// As [`Self::feed_one`], but blocks of scalars are put together once for all iterations of a
+    /// loop, if no counter is among what they are made from.
+    fn feed_again(
+        &mut self,
+        s: ScopeId,
+        stages: &Stages,
+        bind: &[(Name, ast::Bound)],
+        wanted: &Wanted<'_>,
+        draft: &mut Draft,
+    ) -> Result<Bound> {
+        let key = (stages.at, wanted.used.global);
+        if let Some(packed) = self.scopes[s].packed.get(&key).filter(|packed| packed.given_anew == self.given_anew) {
+            draft.causes.add(&packed.causes);
+            return Ok(Bound::Uniform { block: packed.block });
+        }
+        let saw_counter = std::mem::take(&mut self.saw_counter);
+        let before = std::mem::take(&mut draft.causes);
+        let bound = self.feed_one(s, stages, bind, wanted, draft);
+        let causes = std::mem::replace(&mut draft.causes, before);
+        draft.causes.add(&causes);
+        if let (Ok(Bound::Uniform { block }), false) = (&bound, self.saw_counter) {
+            let packed = Packed { block: *block, causes, given_anew: self.given_anew };
+            self.scopes[s].packed.insert(key, packed);
+        }
+        self.saw_counter |= saw_counter;
+        bound
     }
 
     fn feed_one(

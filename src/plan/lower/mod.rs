@@ -27,7 +27,7 @@ mod vars;
 mod view;
 mod wgsl;
 
-use std::collections::{BTreeMap, BTreeSet, HashSet};
+use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 use std::sync::Arc;
 
 pub(super) use causes::{CauseKind, CauseNames, CauseSet};
@@ -105,6 +105,8 @@ pub(super) struct Scope {
     pub counters: Vec<(String, i64)>,
     /// What names in WGSL could be.
     spelled: Words<Arc<[Arc<str>]>>,
+    /// Blocks of scalars by the pass and the shader's variable.
+    packed: HashMap<(Span, usize), Packed, WordState>,
     /// The values of parameters that no `Use` gives, and what feeds inputs, once asked for.
     own_params: Vec<Option<Scalar>>,
     fed: Vec<Option<Entity>>,
@@ -115,6 +117,15 @@ pub(super) struct Scope {
     /// What feeds it does not fit, and that was said: its passes are left out.
     pub broken: bool,
     lets: Vec<LetState>,
+}
+
+/// A block of scalars that holds in every iteration.
+#[derive(Debug)]
+struct Packed {
+    block: usize,
+    causes: CauseSet,
+    /// [`Lowering::given_anew`] when it was made.
+    given_anew: usize,
 }
 
 #[derive(Clone, Debug)]
@@ -192,6 +203,8 @@ pub(super) struct Lowering<'a> {
     iteration: String,
     /// A loop's counter was looked at since this was last put back.
     saw_counter: bool,
+    /// How often a part was given other parameters than before.
+    given_anew: usize,
     /// How many names are being resolved for one another.
     depth: usize,
     /// Variables of root inputs: `particles.position`, `color`.
@@ -233,6 +246,7 @@ impl<'a> Lowering<'a> {
             in_steps: None,
             iteration: String::new(),
             saw_counter: false,
+            given_anew: 0,
             depth: 0,
             input_vars: BTreeMap::new(),
             evaluating: Vec::new(),

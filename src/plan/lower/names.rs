@@ -1,6 +1,6 @@
 //! What a name of the graph language stands for.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap};
 use std::sync::Arc;
 
 use super::inputs::input_fields;
@@ -67,6 +67,7 @@ impl Lowering<'_> {
         let scope = Scope {
             locals: self.program.declared(&graph),
             spelled: Words::default(),
+            packed: HashMap::default(),
             own_params: vec![None; graph.params.len()],
             fed: vec![None; graph.inputs.len()],
             path,

@@ -63,6 +63,8 @@ impl Lowering<'_> {
             Some(child) => *child,
             None => {
                 self.unroll(s, used.name.span)?;
+                // What it is given first is nothing new to anybody.
+                let given_anew = self.given_anew;
                 let path = join(&self.scopes[s].path, &used.name.value);
                 let mut trace = self.scopes[s].trace.clone();
                 trace.push(used.name.span);
@@ -70,6 +72,7 @@ impl Lowering<'_> {
                 self.scopes[child].binds = self.binds(&graph, used);
                 self.scopes[s].children.insert(used.name.value.clone(), child);
                 self.give(s, child, used);
+                self.given_anew = given_anew;
                 self.scopes[child].broken = !self.check_inputs(child);
                 self.declare_params(child);
                 return Ok(child);
@@ -126,6 +129,7 @@ impl Lowering<'_> {
         scope.given_counts = given_counts;
         if scope.given != given {
             scope.given = given;
+            self.given_anew += 1;
             scope.lets = vec![LetState::Waiting; scope.graph.lets.len()];
             // What the part's own parts were given may depend on it; they are entered anew in
             // program order, here only what is asked for before that is forgotten.

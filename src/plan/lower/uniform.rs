@@ -203,10 +203,11 @@ impl Lowering<'_> {
 
     /// Whether other values of the parameter behind a whole number may not fit where this one does.
     fn depends_on_value(&self, scalar: &Scalar, ty: &Type) -> bool {
-        let is_whole = matches!(&scalar.value, UniformValue::Known(Value::Int(_)));
-        let is_signed =
-            self.only_param(scalar).is_none_or(|p| p.min.as_ref().and_then(Value::as_int).is_none_or(|m| m < 0));
-        is_whole && is_signed && matches!(ty, Type::Scalar(reflect::Scalar::U32 | reflect::Scalar::I32))
+        let may_be_negative =
+            || self.only_param(scalar).is_none_or(|p| p.min.as_ref().and_then(Value::as_int).is_none_or(|m| m < 0));
+        matches!(&scalar.value, UniformValue::Known(Value::Int(_)))
+            && matches!(ty, Type::Scalar(reflect::Scalar::U32 | reflect::Scalar::I32))
+            && may_be_negative()
     }
 
     /// WGSL sees a `Choice` as the index of its word.
