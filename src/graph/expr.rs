@@ -113,6 +113,28 @@ impl Function {
 }
 
 impl Expr {
+    /// Whether it, or a part of it, is such.
+    pub fn any(&self, is_such: &dyn Fn(&Expr) -> bool) -> bool {
+        is_such(self)
+            || match &self.kind {
+                ExprKind::Literal(_) | ExprKind::Name(_) => false,
+                ExprKind::Component(e, _) | ExprKind::Unary(_, e) => e.any(is_such),
+                ExprKind::Binary(_, a, b) | ExprKind::Item(a, b, _) => a.any(is_such) || b.any(is_such),
+                ExprKind::Call(_, list) | ExprKind::Vector(list) => list.iter().any(|e| e.any(is_such)),
+            }
+    }
+
+    /// Whether it asks `has(input)`, also for a field of the input.
+    pub fn asks_for(&self, input: &str) -> bool {
+        self.any(&|part| match &part.kind {
+            ExprKind::Call(Function::Has, args) => args.iter().any(|arg| match &arg.kind {
+                ExprKind::Name(path) => path.split('.').next() == Some(input),
+                _ => false,
+            }),
+            _ => false,
+        })
+    }
+
     /// Visits every name in the expression, also those that functions take.
     pub fn names<'a>(&'a self, visit: &mut dyn FnMut(&'a str, Span)) {
         match &self.kind {

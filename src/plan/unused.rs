@@ -7,7 +7,8 @@ use super::lower::Lowering;
 use super::model::{self, ObjectRef, Output, Pass};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::graph::declared::Local;
-use crate::graph::model::{Graph, InputKind};
+use crate::graph::model::{Graph, InputKind, NodeKind};
+use crate::program::each_node;
 
 /// Declarations that nothing asked for.
 pub(super) fn unused(lowering: &Lowering<'_>) -> Diagnostics {
@@ -24,7 +25,7 @@ pub(super) fn unused(lowering: &Lowering<'_>) -> Diagnostics {
             .chain(graph.resources.iter().map(|r| (&r.name, "resource")))
             .chain(graph.inputs.iter().map(|i| (&i.name, "input")));
         for (name, what) in declared {
-            if !lowering.used.contains(&name.span) {
+            if !lowering.used.contains(&name.span) && !asked_for(graph, &name.value) {
                 let message = format!("nothing uses the {what} `{}`", name.value);
                 found.push(Diagnostic::warning(Code::UNUSED, message).at(name.span, "declared here"));
             }
@@ -32,6 +33,18 @@ pub(super) fn unused(lowering: &Lowering<'_>) -> Diagnostics {
         found.extend(unused_attributes(lowering, graph));
     }
     found
+}
+
+/// Whether a test of a graph names something, or a `let` asks whether it is there. `and` and `or` may
+/// not have come to it, where what stands before decides.
+fn asked_for(graph: &Graph, name: &str) -> bool {
+    let mut is_asked = graph.lets.iter().any(|derived| derived.expr.asks_for(name));
+    each_node(&graph.passes, &mut |node| {
+        if let NodeKind::If(choice) = &node.kind {
+            choice.test.names(&mut |path, _| is_asked |= path.split('.').next() == Some(name));
+        }
+    });
+    is_asked
 }
 
 /// Attributes that no shader binds and no test asks for, in this graph or in a part.
