@@ -4,6 +4,8 @@
 
 #[path = "cli/bench.rs"]
 mod bench;
+#[path = "cli/declared.rs"]
+mod declared;
 #[path = "cli/files.rs"]
 mod files;
 #[path = "support/golden.rs"]

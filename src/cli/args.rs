@@ -30,6 +30,8 @@ pub enum Command {
     Plan(PlanArgs),
     /// Measure each pass on the GPU, encoding on the CPU, and memory
     Bench(BenchArgs),
+    /// Draw declared cases and hold what comes out against what they expect
+    Test(TestArgs),
     /// Adapters, features and limits, and what each shipped graph needs; with files, what they hold
     Info(InfoArgs),
     /// A diagnostic, at length
@@ -153,6 +155,22 @@ pub struct RenderArgs {
     /// Print each pass's time on the GPU
     #[arg(long)]
     pub timings: bool,
+}
+
+#[derive(Args, Clone, Debug)]
+pub struct TestArgs {
+    /// Files of cases; without any, all below `tests/` that begin with `Tests(`
+    #[arg(value_name = "FILE")]
+    pub files: Vec<PathBuf>,
+    /// Only cases with this in their names; may be given many times
+    #[arg(long, value_name = "NAME")]
+    pub case: Vec<String>,
+    /// Write the pictures that come out in place of the expected ones
+    #[arg(long)]
+    pub bless: bool,
+    /// The graphics interface to use
+    #[arg(long, value_name = "NAME", value_parser = ["vulkan", "metal", "dx12", "gl"])]
+    pub backend: Option<String>,
 }
 
 /// The moment that a picture shows.

@@ -13,6 +13,7 @@ mod render;
 mod report;
 mod session;
 mod table;
+mod test;
 mod view;
 mod watch;
 
@@ -43,6 +44,7 @@ pub fn run(args: impl IntoIterator<Item = OsString>) -> ExitCode {
         args::Command::Check(args) => check::run(args),
         args::Command::Plan(args) => plan::run(args),
         args::Command::Bench(args) => bench::run(args),
+        args::Command::Test(args) => test::run(args),
         args::Command::Info(args) => info::run(args),
         args::Command::Explain(args) => explain::run(args),
         args::Command::New(args) => new::run(args),

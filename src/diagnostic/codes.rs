@@ -145,6 +145,8 @@ codes! {
     DEVICE = "device";
     /// A file that could not be written.
     OUTPUT = "output";
+    /// What a declared case expects did not come out.
+    TEST_FAILED = "test-failed";
 }
 
 const DOCS: &str = include_str!("../../docs/diagnostics.md");
