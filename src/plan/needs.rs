@@ -11,7 +11,10 @@ use crate::shader::reflect::Stage;
 
 /// The largest amount of each thing, and the place that asks for it.
 #[derive(Default)]
-struct Wanted<'a>([(u64, Option<(Span, &'a [Span])>); LIMITS.len()]);
+struct Wanted<'a>([(u64, Option<Place<'a>>); LIMITS.len()]);
+
+/// What asks, and where the parts that it lies in are used.
+type Place<'a> = (Span, &'a [Span]);
 
 impl<'a> Wanted<'a> {
     fn at_least(&mut self, limit: Limit, amount: u64, span: Span, trace: &'a [Span]) {

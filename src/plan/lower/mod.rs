@@ -11,11 +11,16 @@ mod causes;
 mod draw;
 mod extent;
 mod inputs;
+mod materials;
+mod measure;
 mod meshes;
+mod misbound;
 mod names;
 mod nodes;
+mod params;
 mod parts;
 mod scalars;
+mod signature;
 mod stats;
 mod steps;
 mod swaps;
@@ -129,6 +134,7 @@ struct Packed {
 }
 
 #[derive(Clone, Debug)]
+#[expect(clippy::large_enum_variant, reason = "most are known in the end")]
 enum LetState {
     Waiting,
     Evaluating,

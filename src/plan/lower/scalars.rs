@@ -2,14 +2,13 @@
 
 use std::cell::RefCell;
 
-use super::names::{Entity, join};
-use super::{CauseKind, CauseSet, LetState, Lowering, Result, Scalar, ScopeId, fault, traced};
+use super::names::Entity;
+use super::{CauseSet, LetState, Lowering, Result, Scalar, ScopeId, fault, traced};
 use crate::diagnostic::{Code, Diagnostic, Span};
 use crate::graph::eval::{self, Lookup};
 use crate::graph::expr::{Expr, ExprKind, Function};
-use crate::graph::model::{Param, ParamKind};
 use crate::graph::value::Value;
-use crate::plan::model::{self, ObjectKind, UniformValue};
+use crate::plan::model::{ObjectKind, UniformValue};
 
 /// The names of one graph instance, as the expression language asks for them. Gathers what the
 /// answers depend on.
@@ -151,91 +150,6 @@ impl<'p> Lowering<'p> {
         traced(diagnostic, &self.scopes[s].trace)
     }
 
-    /// Parameters under their instance paths: those that nobody gave are shown to users.
-    pub(super) fn declare_params(&mut self, s: ScopeId) {
-        let graph = self.scopes[s].graph.clone();
-        for i in 0..graph.params.len() {
-            if self.scopes[s].given.contains_key(&graph.params[i].name.value) {
-                continue;
-            }
-            let value = self.own_param(s, i);
-            let Some(Scalar { value: UniformValue::Known(value), .. }) = self.report(value) else { continue };
-            let param = &graph.params[i];
-            let path = join(&self.scopes[s].path, &param.name.value);
-            let shown = model::Param {
-                path: path.clone(),
-                kind: param.kind.clone(),
-                value,
-                default: param.default.as_ref().map(|d| d.value.clone()),
-                min: param.min.as_ref().map(|d| d.value.clone()),
-                max: param.max.as_ref().map(|d| d.value.clone()),
-                unit: param.unit.clone(),
-                about: param.about.clone(),
-                span: param.name.span,
-            };
-            self.params.insert(path, shown);
-        }
-    }
-
-    pub(super) fn param(&mut self, s: ScopeId, i: usize) -> Result<Scalar> {
-        let graph = self.scopes[s].graph.clone();
-        let param = &graph.params[i];
-        self.used.insert(param.name.span);
-        match self.scopes[s].given.get(&param.name.value) {
-            Some((scalar, _)) => {
-                self.saw_counter |= self.scopes[s].given_counts;
-                Ok(scalar.clone())
-            }
-            None => self.own_param(s, i),
-        }
-    }
-
-    /// The value of a parameter that no `Use` gives.
-    fn own_param(&mut self, s: ScopeId, i: usize) -> Result<Scalar> {
-        if let Some(known) = &self.scopes[s].own_params[i] {
-            return Ok(known.clone());
-        }
-        let graph = self.scopes[s].graph.clone();
-        let param = &graph.params[i];
-        let path = join(&self.scopes[s].path, &param.name.value);
-        let causes = self.causes.set(CauseKind::Param, &path);
-        let given = match (self.request.params.get(&path), &param.default) {
-            (Some(value), _) => value.clone(),
-            (None, Some(default)) => default.value.clone(),
-            (None, None) if self.stand_in => made_up(param),
-            (None, None) => {
-                let message = format!("the parameter `{}` has no default and nobody gives it", param.name.value);
-                let diagnostic = fault(Code::MISSING_FIELD, message, param.name.span, "the parameter");
-                return Err(traced(diagnostic, &self.scopes[s].trace));
-            }
-        };
-        let value = self.fit(Scalar::caused(given, causes), param, param.name.span)?;
-        self.scopes[s].own_params[i] = Some(value.clone());
-        Ok(value)
-    }
-
-    /// Makes a given value the parameter's own kind, or says why it does not fit.
-    pub(super) fn fit(&self, scalar: Scalar, param: &Param, at: Span) -> Result<Scalar> {
-        let UniformValue::Known(value) = &scalar.value else { return Ok(scalar) };
-        let name = &param.name.value;
-        let Some(fitted) = convert(value, &param.kind) else {
-            let message = format!("`{name}` is {} and cannot be {value} ({})", kind(&param.kind), value.kind());
-            let diagnostic = Diagnostic::error(Code::BAD_PARAMETER, message).at(at, "given here");
-            return Err(Box::new(with_declaration(diagnostic, param, at)));
-        };
-        for (bound, low) in [(&param.min, true), (&param.max, false)] {
-            let Some(limit) = bound.as_ref().and_then(|b| b.value.as_f64()) else { continue };
-            let outside = fitted.numbers().any(|x| if low { x < limit } else { x > limit });
-            if outside {
-                let side = if low { "at least" } else { "at most" };
-                let message = format!("`{name}` must be {side} {limit}, and is {fitted}");
-                let diagnostic = Diagnostic::error(Code::BAD_PARAMETER, message).at(at, "given here");
-                return Err(Box::new(with_declaration(diagnostic, param, at)));
-            }
-        }
-        Ok(Scalar { value: UniformValue::Known(fitted), causes: scalar.causes })
-    }
-
     pub(super) fn let_value(&mut self, s: ScopeId, i: usize) -> Result<Scalar> {
         let graph = self.scopes[s].graph.clone();
         let derived = &graph.lets[i];
@@ -275,152 +189,8 @@ impl<'p> Lowering<'p> {
         traced(diagnostic.hint("one of them must be known without the others"), &self.scopes[s].trace)
     }
 
-    /// `size(x)`, `count(x)`, `capacity(x)`, `has(x)`, `device(x)`.
-    fn measure(&mut self, s: ScopeId, f: Function, path: &str, span: Span) -> Result<(Value, CauseSet)> {
-        match f {
-            Function::Has => return self.has(s, path, span),
-            Function::Device => return self.device_has(s, path, span),
-            _ => {}
-        }
-        let entity = self.resolve(s, path, span)?;
-        let refuse = |low: &Self, what: &str| {
-            let message = format!("`{}({path})`: `{path}` {what}", f.name());
-            Err(traced(fault(Code::WRONG_KIND, message, span, "not possible"), &low.scopes[s].trace))
-        };
-        match (f, &entity) {
-            (Function::Count, Entity::Input { .. }) => {
-                let scalar = self.resolve(s, &format!("{path}.count"), span)?;
-                match scalar {
-                    Entity::Scalar(Scalar { value: UniformValue::Known(value), causes }) => Ok((value, causes)),
-                    _ => refuse(self, "has no count"),
-                }
-            }
-            (Function::Size | Function::Count | Function::Capacity, Entity::Var(var)) => {
-                let building = self.object(self.vars[*var].now);
-                let causes = building.causes.clone();
-                match (f, &building.object.kind) {
-                    (Function::Size, ObjectKind::Texture(t)) => {
-                        let size = [t.width, t.height].into_iter().chain(t.is_3d.then_some(t.layers));
-                        Ok((Value::ints(size.map(i64::from)), causes))
-                    }
-                    (Function::Count, ObjectKind::Buffer(b)) if b.counted => {
-                        let message = format!("the count of `{path}` is known only on the GPU");
-                        let diagnostic =
-                            fault(Code::NOT_KNOWN_WHEN_PLANNING, message, span, "decided while a frame runs").hint(
-                                format!("`capacity({path})` is known, and `Each(\"{path}\")` runs once for each item"),
-                            );
-                        Err(traced(diagnostic, &self.scopes[s].trace))
-                    }
-                    (Function::Count, ObjectKind::Buffer(b)) | (Function::Capacity, ObjectKind::Buffer(b)) => {
-                        Ok((Value::Int(i64::try_from(b.items).unwrap_or(i64::MAX)), causes))
-                    }
-                    (Function::Size, _) => refuse(self, "is a buffer and has no size; `count` tells how many items"),
-                    _ => refuse(self, "is a texture and has no count; `size` tells its width and height"),
-                }
-            }
-            (_, other) => {
-                let what = format!("is {}", other.what());
-                refuse(self, &what)
-            }
-        }
-    }
-
-    fn has(&mut self, s: ScopeId, path: &str, span: Span) -> Result<(Value, CauseSet)> {
-        let head = path.split('.').next().unwrap_or(path);
-        let causes = self.causes.set(CauseKind::Input, head);
-        let graph = self.scopes[s].graph.clone();
-        let Some(input) = graph.inputs.iter().find(|i| i.name.value == head) else {
-            let names: Vec<&str> = graph.inputs.iter().map(|i| i.name.value.as_str()).collect();
-            let diagnostic =
-                fault(Code::UNKNOWN_NAME, format!("`{head}` is no input"), span, "unknown input").nearest(head, names);
-            return Err(traced(diagnostic, &self.scopes[s].trace));
-        };
-        self.used.insert(input.name.span);
-        let there = match self.resolve(s, path, span) {
-            Ok(entity) if self.is_absent(&entity) => false,
-            Ok(Entity::Var(var)) => {
-                let origin = &self.object(self.vars[var].now).object.origin;
-                !matches!(origin, model::Origin::Attribute { present: false, .. })
-            }
-            Ok(_) => true,
-            Err(d) if d.id == Code::OPTIONAL_INPUT => false,
-            Err(d) => return Err(d),
-        };
-        Ok((Value::Bool(there), causes))
-    }
-
-    fn device_has(&mut self, s: ScopeId, feature: &str, span: Span) -> Result<(Value, CauseSet)> {
-        let known = wgpu_types::Features::all();
-        let found = known.iter_names().find(|(name, _)| name.eq_ignore_ascii_case(feature));
-        match found {
-            Some((_, flag)) => Ok((Value::Bool(self.request.features.contains(flag)), CauseSet::default())),
-            None => {
-                let names: Vec<String> = known.iter_names().map(|(name, _)| name.to_ascii_lowercase()).collect();
-                let diagnostic =
-                    fault(Code::UNKNOWN_NAME, format!("`{feature}` is no device feature"), span, "unknown")
-                        .nearest(feature, names.iter().map(String::as_str));
-                Err(traced(diagnostic, &self.scopes[s].trace))
-            }
-        }
-    }
-
     /// A live scalar by its canonical name.
     pub(super) fn live_field(&mut self, root: &str, field: &str, span: Span) -> Scalar {
         self.live(&format!("{root}.{field}"), span)
-    }
-}
-
-fn with_declaration(diagnostic: Diagnostic, param: &Param, at: Span) -> Diagnostic {
-    let diagnostic = if at == param.name.span { diagnostic } else { diagnostic.see(param.name.span, "declared here") };
-    match &param.kind {
-        ParamKind::Choice(words) => {
-            let words: Vec<String> = words.iter().map(|w| w.value.clone()).collect();
-            diagnostic.hint(format!("it is one of {}", super::names::list(&words)))
-        }
-        _ => diagnostic,
-    }
-}
-
-/// What messages call a parameter's kind, with its article.
-fn kind(kind: &ParamKind) -> String {
-    match kind {
-        ParamKind::Int => "an Int".to_owned(),
-        other => format!("a {}", other.name()),
-    }
-}
-
-/// The value as the kind has it; `None` if it does not fit.
-pub(in crate::plan) fn convert(value: &Value, kind: &ParamKind) -> Option<Value> {
-    let vector = |n: &[usize]| match value {
-        Value::Vector(v) if n.contains(&v.len()) => {
-            (value.numbers().count() == v.len()).then(|| Value::vec(value.numbers()))
-        }
-        _ => None,
-    };
-    match (kind, value) {
-        (ParamKind::Int, Value::Int(_)) | (ParamKind::Bool, Value::Bool(_)) => Some(value.clone()),
-        (ParamKind::Float, Value::Int(_) | Value::Float(_)) => value.as_f64().map(Value::Float),
-        (ParamKind::Choice(words), Value::Word(word)) => words.iter().any(|w| w.value == *word).then(|| value.clone()),
-        (ParamKind::Vec2, _) => vector(&[2]),
-        (ParamKind::Vec3, _) => vector(&[3]),
-        (ParamKind::Vec4, _) => vector(&[4]),
-        (ParamKind::Color, _) => vector(&[3, 4]),
-        _ => None,
-    }
-}
-
-/// A value for a part's parameter when the part is checked by itself.
-fn made_up(param: &Param) -> Value {
-    let low = param.min.as_ref().and_then(|v| v.value.as_f64()).unwrap_or(0.0);
-    let high = param.max.as_ref().and_then(|v| v.value.as_f64()).unwrap_or(f64::MAX);
-    let number = |want: f64| want.clamp(low, high);
-    match &param.kind {
-        ParamKind::Int => Value::Int(number(64.0) as i64),
-        ParamKind::Float => Value::Float(number(1.0)),
-        ParamKind::Bool => Value::Bool(false),
-        ParamKind::Choice(words) => Value::Word(words.first().map(|w| w.value.clone()).unwrap_or_default()),
-        ParamKind::Vec2 => Value::vec([number(1.0); 2]),
-        ParamKind::Vec3 | ParamKind::Color => Value::vec([number(1.0); 3]),
-        ParamKind::Vec4 => Value::vec([number(1.0); 4]),
     }
 }
