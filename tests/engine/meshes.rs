@@ -365,7 +365,7 @@ pub fn scenes_without_particles_are_dry(_: &mut Engine) {
         let light = r#"lights: {"sun": Light(direction: (-0.3, -0.5, -1.0), intensity: 4.0)}"#;
         format!("Scene(graph: {graph:?}, {view}, {light}, {meshes})")
     };
-    for graph in ["imai2016.ron", "imai2014.ron"] {
+    for graph in ["imai2016.ron", "imai2014.ron", "iwasaki2006.ron"] {
         let files = files(String::new(), of(graph, r#"meshes: {"meshes": ["red.gltf"]}"#));
         let found = seen(&files, Moment::default(), &[[0.0, 0.0], [0.0, 1.9], [0.0, -1.2]]);
         let [middle, above, floor] = found[..] else { panic!() };
