@@ -145,7 +145,7 @@ fn position(items: &Items<'_>) -> Result<[Lane; 3], String> {
         let at_front = || Some((0, ty)).filter(|_| is_triple(ty));
         let member = match ty {
             Type::Struct { members, .. } => {
-                let named = members.iter().find(|m| ["position", "pos", "p", "center"].contains(&m.name.as_str()));
+                let named = members.iter().find(|m| ["position", "pos", "p", "center"].contains(&&*m.name));
                 named.map(|m| (m.offset, &m.ty))
             }
             _ => None,
@@ -166,7 +166,7 @@ fn is_triple(ty: &Type) -> bool {
     match ty {
         Type::Vector { components, .. } => *components >= 3,
         Type::Struct { members, .. } => {
-            members.len() >= 3 && ["x", "y", "z"].iter().zip(members).all(|(n, m)| *n == m.name)
+            members.len() >= 3 && ["x", "y", "z"].iter().zip(members).all(|(n, m)| *n == &*m.name)
         }
         _ => false,
     }

@@ -78,7 +78,7 @@ fn seal(lowering: &mut Lowering<'_>) {
 fn touched(lowering: &Lowering<'_>) -> Vec<bool> {
     let mut touched = vec![false; lowering.objects.len()];
     for access in lowering.flat.iter().flat_map(|flat| &flat.pass.accesses) {
-        lowering.object_ids(access.object).into_iter().for_each(|id| touched[id] = true);
+        lowering.object_ids(access.object).for_each(|id| touched[id] = true);
     }
     touched
 }

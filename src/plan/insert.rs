@@ -63,7 +63,7 @@ fn changed_in_steps(lowering: &Lowering<'_>) -> Vec<Pending> {
     let mut changed = vec![Pending::default(); lowering.steps.len()];
     for flat in &lowering.flat {
         if let Some(steps) = flat.pass.steps {
-            mark_changed(lowering, flat, &mut changed[steps], |object| lowering.object_ids(object));
+            mark_changed(lowering, flat, &mut changed[steps], |object| lowering.object_ids(object).collect());
         }
     }
     changed
@@ -158,7 +158,7 @@ impl Inserter {
             unordered: false,
         };
         let places =
-            vec![Place { graph: flat.word, shader: None, name: String::new(), samples_mips: false, appends: false }];
+            vec![Place { graph: flat.word, shader: None, name: "".into(), samples_mips: false, appends: false }];
         self.out.push(FlatPass {
             pass,
             causes: flat.causes.clone(),
@@ -198,7 +198,7 @@ fn made(lowering: &Lowering<'_>, reader: &FlatPass, what: &str, object: ObjectRe
     let place = Place {
         graph: reader.word,
         shader: None,
-        name: building.object.path.clone(),
+        name: building.object.path.as_str().into(),
         samples_mips: false,
         appends: false,
     };

@@ -304,7 +304,7 @@ impl MeshGeometry {
 /// An item of `x.instances` as shaders must see it.
 pub fn instance_type() -> Type {
     let span = Span { file: crate::diagnostic::FileId(0), start: 0, end: 0 };
-    let member = |name: &str, offset, ty| Member { name: name.to_owned(), offset, ty, span };
+    let member = |name: &str, offset, ty| Member { name: name.into(), offset, ty, span };
     let members = vec![
         member("body_from_mesh", 0, Type::Matrix { columns: 4, rows: 4, scalar: Scalar::F32 }),
         member("body", 64, WHOLE),

@@ -327,7 +327,7 @@ fn mark_unordered(lowering: &mut Lowering<'_>) {
         for p in 0..lowering.flat.len() {
             let pass = &lowering.flat[p].pass;
             let ids = |access: &model::Access| lowering.object_ids(access.object);
-            let reads = |a: &model::Access| a.read && ids(a).iter().any(|id| reached.contains(id));
+            let reads = |a: &model::Access| a.read && ids(a).any(|id| reached.contains(&id));
             if pass.unordered || pass.accesses.iter().any(reads) {
                 let written: Vec<ObjectId> = pass.accesses.iter().filter(|a| a.write).flat_map(ids).collect();
                 reached.extend(written);

@@ -249,7 +249,7 @@ pub struct UniformBlock {
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct UniformMember {
-    pub name: String,
+    pub name: Arc<str>,
     pub offset: u32,
     pub ty: Type,
     pub value: UniformValue,

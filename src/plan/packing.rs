@@ -54,11 +54,11 @@ pub fn rows(rows: &[Row], item: Option<&Type>, stride: u32) -> Result<Vec<u8>, S
     for (index, (row, out)) in rows.iter().zip(bytes.chunks_exact_mut(stride.max(1) as usize)).enumerate() {
         for member in members {
             let value =
-                row.get(&member.name).ok_or_else(|| format!("row {index} lacks `{}` of `{name}`", member.name))?;
+                row.get(&*member.name).ok_or_else(|| format!("row {index} lacks `{}` of `{name}`", member.name))?;
             let place = out.get_mut(member.offset as usize..).unwrap_or_default();
             encode(value, &member.ty, place).map_err(|why| format!("row {index}, `{}`: {why}", member.name))?;
         }
-        if let Some(other) = row.keys().find(|key| members.iter().all(|m| m.name != **key)) {
+        if let Some(other) = row.keys().find(|key| members.iter().all(|m| *m.name != ***key)) {
             return Err(format!("row {index} has `{other}`, which `{name}` has not"));
         }
     }

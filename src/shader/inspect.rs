@@ -61,7 +61,7 @@ impl Inspector<'_> {
             .map(|(binding, variable)| {
                 let name = variable.name.clone().unwrap_or_default();
                 let span = self.value(&name);
-                Global { name, span, binding: binding as u32, kind: self.types.global(variable) }
+                Global { name: name.into(), span, binding: binding as u32, kind: self.types.global(variable) }
             })
             .collect()
     }

@@ -31,7 +31,7 @@ pub struct Module {
 /// A `var` that a pass has to feed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Global {
-    pub name: String,
+    pub name: Arc<str>,
     /// The name where it is declared.
     pub span: Span,
     pub binding: u32,
@@ -112,7 +112,7 @@ pub enum Type {
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct Member {
-    pub name: String,
+    pub name: Arc<str>,
     pub offset: u32,
     pub ty: Type,
     /// The member's declaration, for labels.
@@ -254,6 +254,6 @@ impl Module {
     }
 
     pub fn global(&self, name: &str) -> Option<(usize, &Global)> {
-        self.globals.iter().enumerate().find(|(_, g)| g.name == name)
+        self.globals.iter().enumerate().find(|(_, g)| *g.name == *name)
     }
 }

@@ -63,7 +63,7 @@ impl Types<'_> {
         self.budget.set(self.budget.get().checked_sub(1)?);
         let name = member.name.clone().unwrap_or_default();
         let span = self.declarations.member(of_name, &name).unwrap_or_else(|| self.declared(of));
-        Some(Member { offset: member.offset, ty: self.host(member.ty)?, name, span })
+        Some(Member { offset: member.offset, ty: self.host(member.ty)?, name: name.into(), span })
     }
 
     /// Where a type is written; the start of the named file for one that WGSL has built in.

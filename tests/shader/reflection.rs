@@ -38,11 +38,11 @@ fn globals_are_numbered_in_the_order_of_their_text() {
          var<uniform> values: vec4<f32>;
          @compute @workgroup_size(1) fn main() { late[0] = mine; }",
     );
-    let names: Vec<(&str, u32)> = m.globals.iter().map(|g| (g.name.as_str(), g.binding)).collect();
+    let names: Vec<(&str, u32)> = m.globals.iter().map(|g| (&*g.name, g.binding)).collect();
     assert_eq!(names, [("late", 0), ("picture", 1), ("linear_clamp", 2), ("values", 3)]);
     for (handle, variable) in m.naga.global_variables.iter() {
         let binding = variable.binding.map(|b| (b.group, b.binding));
-        let expected = m.globals.iter().find(|g| Some(&g.name) == variable.name.as_ref()).map(|g| (0, g.binding));
+        let expected = m.globals.iter().find(|g| Some(&*g.name) == variable.name.as_deref()).map(|g| (0, g.binding));
         assert_eq!(binding, expected, "{handle:?}");
     }
 }
@@ -110,7 +110,7 @@ var<storage, read_write> things: Outer;
     let GlobalKind::Storage { writable: true, ty } = &global.kind else { panic!("{:?}", global.kind) };
     let Type::Struct { name, members, size } = ty else { panic!("{ty:?}") };
     assert_eq!((name.as_str(), *size), ("Outer", 128));
-    let offsets: Vec<(&str, u32)> = members.iter().map(|m| (m.name.as_str(), m.offset)).collect();
+    let offsets: Vec<(&str, u32)> = members.iter().map(|m| (&*m.name, m.offset)).collect();
     assert_eq!(offsets, [("count", 0), ("inner", 16), ("matrix", 32), ("pair", 80), ("items", 112)]);
     assert_eq!(members[0].ty, Type::Atomic(Scalar::U32));
     assert_eq!(members[2].ty, Type::Matrix { columns: 3, rows: 3, scalar: Scalar::F32 });

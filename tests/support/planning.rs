@@ -186,7 +186,7 @@ pub fn shader(plan: &Plan, at: usize) -> &ShaderUse {
 
 /// What a variable of a pass's shader is bound to.
 pub fn bound(plan: &Plan, at: usize, name: &str) -> ObjectRef {
-    let binding: &Binding = shader(plan, at).bindings.iter().find(|b| b.name == name).unwrap();
+    let binding: &Binding = shader(plan, at).bindings.iter().find(|b| *b.name == *name).unwrap();
     match &binding.bound {
         Bound::UniformBuffer { buffer } | Bound::Storage { buffer, .. } => *buffer,
         Bound::Texture { view: View { object, .. }, .. } | Bound::StorageTexture { view: View { object, .. }, .. } => {

@@ -125,7 +125,7 @@ impl Lowering<'_> {
         global: &Global,
         bind: &[(Name, ast::Bound)],
     ) -> Result<Option<(Entity, Option<ast::View>)>> {
-        match bind.iter().find(|(name, _)| name.value == global.name) {
+        match bind.iter().find(|(name, _)| *name.value == *global.name) {
             Some((_, ast::Bound::View(view))) => {
                 Ok(Some((self.resolve(s, &view.of.value, view.of.span)?, Some(view.clone()))))
             }

@@ -163,11 +163,11 @@ impl Lowering<'_> {
 fn counted_layout(ty: &Type, span: Span) -> Option<Layout> {
     let Type::Struct { members, .. } = ty else { return None };
     let [count, items] = members.as_slice() else { return None };
-    let is_count = count.name == "count"
+    let is_count = &*count.name == "count"
         && matches!(count.ty, Type::Scalar(Scalar::U32) | Type::Atomic(Scalar::U32))
         && count.offset == 0;
     let (offset, stride, item) = items.ty.runtime_array()?;
-    (is_count && items.name == "items").then(|| Layout {
+    (is_count && &*items.name == "items").then(|| Layout {
         header: items.offset + offset,
         stride,
         item: item.clone(),

@@ -73,7 +73,7 @@ impl Lowering<'_> {
             return Err(traced(diagnostic, &self.scopes[s].trace));
         };
         for member in members {
-            let found = MATERIAL.iter().find(|(name, _)| *name == member.name);
+            let found = MATERIAL.iter().find(|(name, _)| *name == &*member.name);
             if found.is_none_or(|(_, ty)| *ty != member.ty) {
                 return Err(self.material_misfit(s, place, member, found.map(|(_, ty)| ty)));
             }
@@ -151,7 +151,7 @@ enum MaterialKind {
 
 /// What a variable's name stands for in a draw of meshes.
 fn material_kind(global: &Global) -> Option<MaterialKind> {
-    if global.name == "material" && matches!(global.kind, GlobalKind::Uniform(_)) {
+    if &*global.name == "material" && matches!(global.kind, GlobalKind::Uniform(_)) {
         return Some(MaterialKind::Factors);
     }
     MaterialTexture::named(&global.name, "_texture")

@@ -13,14 +13,14 @@ use crate::shader::reflect::{GlobalKind, TextureDimension, Type};
 impl Lowering<'_> {
     /// An optional input that a shader takes as if it were always there.
     pub(super) fn absent_fed_to(&self, s: ScopeId, place: &Feed<'_>) -> Box<Diagnostic> {
-        let bound = place.bind.iter().find(|(name, _)| name.value == place.global().name);
+        let bound = place.bind.iter().find(|(name, _)| *name.value == *place.global().name);
         let (name, span) = match bound {
             Some((_, ast::Bound::View(view))) => (view.of.value.as_str(), view.of.span),
             Some((_, ast::Bound::Expr(expr))) => match &expr.kind {
                 ExprKind::Name(path) => (path.as_str(), expr.span),
-                _ => (place.global().name.as_str(), place.at),
+                _ => (&*place.global().name, place.at),
             },
-            None => (place.global().name.as_str(), place.at),
+            None => (&*place.global().name, place.at),
         };
         let mut diagnostic = self.absent_here(s, name, span);
         diagnostic
@@ -73,7 +73,7 @@ impl Lowering<'_> {
         for global in &stages.module.globals {
             known.push(&global.name);
             if let GlobalKind::Uniform(Type::Struct { members, .. }) = &global.kind {
-                known.extend(members.iter().map(|m| m.name.as_str()));
+                known.extend(members.iter().map(|m| &*m.name));
             }
         }
         known.extend(stages.module.overrides.iter().map(|o| o.name.as_str()));

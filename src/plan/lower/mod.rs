@@ -85,7 +85,7 @@ pub(super) struct Place {
     /// The shader's variable, if one accesses.
     pub shader: Option<Span>,
     /// How messages call it.
-    pub name: String,
+    pub name: Arc<str>,
     /// Texture sampled with more than mip 0 in view: automatic mips must be made before.
     pub samples_mips: bool,
     /// Appends to a counted buffer, or otherwise writes its count.
@@ -305,11 +305,12 @@ impl<'a> Lowering<'a> {
     }
 
     /// Every object that a reference may stand for: one, or all of a ring.
-    pub fn object_ids(&self, object: ObjectRef) -> Vec<ObjectId> {
-        match object {
-            ObjectRef::Fixed(id) => vec![id],
-            ObjectRef::Ring { ring, .. } => self.rings[ring].objects.clone(),
-        }
+    pub fn object_ids(&self, object: ObjectRef) -> impl Iterator<Item = ObjectId> + use<> {
+        let (one, all) = match object {
+            ObjectRef::Fixed(id) => (Some(id), Vec::new()),
+            ObjectRef::Ring { ring, .. } => (None, self.rings[ring].objects.clone()),
+        };
+        one.into_iter().chain(all)
     }
 
     /// Objects that came to be in a ring only after passes had named them become members of it.

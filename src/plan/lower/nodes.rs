@@ -184,7 +184,7 @@ impl Lowering<'_> {
 
 impl Place {
     pub(super) fn at(graph: Span, name: &str, appends: bool) -> Self {
-        Self { graph, shader: None, name: name.to_owned(), samples_mips: false, appends }
+        Self { graph, shader: None, name: name.into(), samples_mips: false, appends }
     }
 }
 

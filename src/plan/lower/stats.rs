@@ -211,7 +211,7 @@ impl Lowering<'_> {
 
     /// What a buffer holds after the frame; nothing, and that is kept, if no pass writes it in this plan.
     fn content(&self, object: ObjectRef, walk: &mut Walk) -> Option<Buffer> {
-        let ids = self.object_ids(object);
+        let ids: Vec<_> = self.object_ids(object).collect();
         let about = &self.object(object).object;
         let ObjectKind::Buffer(buffer) = &about.kind else { return None };
         let is_written = about.origin != Origin::Frame
@@ -219,7 +219,7 @@ impl Lowering<'_> {
                 .flat
                 .iter()
                 .flat_map(|flat| &flat.pass.accesses)
-                .any(|access| access.write && self.object_ids(access.object).iter().any(|id| ids.contains(id)));
+                .any(|access| access.write && self.object_ids(access.object).any(|id| ids.contains(&id)));
         if !is_written {
             walk.missing = Some(about.path.clone());
             return None;
@@ -249,7 +249,7 @@ impl Lowering<'_> {
                     let message = format!("an item of `{path}` is `{}`, which has no member `{member}`", ty.wgsl());
                     let mut diagnostic = fault(Code::UNKNOWN_NAME, message, at, "unknown member");
                     if let Type::Struct { members, .. } = &ty {
-                        diagnostic = diagnostic.nearest(member, members.iter().map(|m| m.name.as_str()));
+                        diagnostic = diagnostic.nearest(member, members.iter().map(|m| &*m.name));
                     }
                     return Err(traced(diagnostic, &self.scopes[s].trace));
                 }
@@ -279,7 +279,7 @@ fn probe(span: Span, walk: &mut Walk, probe: Option<Probe>) -> Expr {
 fn member(ty: &Type, name: &str) -> Option<(u32, Type)> {
     match ty {
         Type::Struct { members, .. } => {
-            members.iter().find(|member| member.name == name).map(|member| (member.offset, member.ty.clone()))
+            members.iter().find(|member| *member.name == *name).map(|member| (member.offset, member.ty.clone()))
         }
         Type::Vector { components, scalar } => {
             let index = ["x", "y", "z", "w"].iter().position(|c| *c == name)? as u32;

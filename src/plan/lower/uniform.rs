@@ -63,7 +63,7 @@ impl Lowering<'_> {
                 return Ok(Bound::UniformBuffer { buffer: object });
             }
             Some(Entity::Input { root, kind }) => Prefix::Input { root, kind },
-            Some(Entity::Part) => Prefix::Use(place.global().name.clone()),
+            Some(Entity::Part) => Prefix::Use(place.global().name.to_string()),
             Some(Entity::Absent) => return Err(self.absent_fed_to(s, place)),
             _ => Prefix::None,
         };
@@ -121,7 +121,7 @@ impl Lowering<'_> {
     /// The scalar of a member's name.
     fn named(&mut self, s: ScopeId, prefix: &Prefix, member: &Member, at: Span) -> Result<Option<Named>> {
         match prefix {
-            Prefix::Input { root, kind } if input_fields(kind).any(|field| field == member.name) => {
+            Prefix::Input { root, kind } if input_fields(kind).any(|field| field == &*member.name) => {
                 if !matches!(kind, ast::InputKind::Particles { .. } | ast::InputKind::Meshes { .. }) {
                     return Ok(Some((None, self.live_field(root, &member.name, member.span))));
                 }
@@ -131,7 +131,7 @@ impl Lowering<'_> {
             }
             Prefix::Use(name) => {
                 let child = self.child(s, name, member.span)?;
-                let output = self.scopes[child].graph.outputs.iter().any(|o| o.name.value == member.name);
+                let output = self.scopes[child].graph.outputs.iter().any(|o| *o.name.value == *member.name);
                 let path = format!("{name}.{}", member.name);
                 if output && let Entity::Scalar(scalar) = self.resolve(s, &path, member.span)? {
                     return Ok(Some((Some(path.into()), scalar)));
@@ -161,7 +161,7 @@ impl Lowering<'_> {
         let mut diagnostic = fault(Code::UNBOUND, message, member.span, "the member")
             .see(place.stages.at, "run by this pass")
             .nearest(&member.name, names.iter().map(String::as_str));
-        if MATERIAL.iter().any(|(name, _)| *name == member.name) {
+        if MATERIAL.iter().any(|(name, _)| *name == &*member.name) {
             diagnostic = diagnostic.hint("materials are there in a `Draw(meshes: ...)`, as `var<uniform> material`");
         }
         diagnostic = match prefix {

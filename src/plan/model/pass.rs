@@ -1,6 +1,7 @@
 //! What a plan's passes are: what they run, what they are fed, and what they touch.
 
 use std::ops::Range;
+use std::sync::Arc;
 
 use wgpu_types::ShaderStages;
 
@@ -105,7 +106,7 @@ pub struct Binding {
     /// In bind group 0.
     pub binding: u32,
     /// The WGSL variable.
-    pub name: String,
+    pub name: Arc<str>,
     pub stages: ShaderStages,
     pub bound: Bound,
 }

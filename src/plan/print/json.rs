@@ -63,7 +63,7 @@ fn value(plan: &Plan) -> Json {
         "uniforms": plan.uniforms.iter().map(|block| json!({
             "bytes": block.size,
             "members": block.members.iter().map(|m| json!({
-                "name": m.name,
+                "name": &*m.name,
                 "offset": m.offset,
                 "type": m.ty.wgsl(),
                 "value": match &m.value {
@@ -303,7 +303,7 @@ fn binding(plan: &Plan, binding: &Binding) -> Json {
             json!({ "kind": "material sampler", "input": input, "texture": texture.stem() })
         }
     };
-    json!({ "name": binding.name, "binding": binding.binding, "bound": bound })
+    json!({ "name": &*binding.name, "binding": binding.binding, "bound": bound })
 }
 
 fn view(plan: &Plan, view: &View) -> Json {
