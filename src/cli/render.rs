@@ -15,7 +15,7 @@ use super::table;
 use crate::diagnostic::{Code, Diagnostic, Diagnostics, Sources};
 use crate::files::DiskFiles;
 use crate::host::picture::PictureKind;
-use crate::host::{Cache, Player, Session, When, load};
+use crate::host::{Cache, Player, Session, When, load, not_in_steps};
 
 pub fn run(args: &RenderArgs) -> Exit {
     let mut sources = Sources::new();
@@ -130,6 +130,7 @@ fn draw(
     let mut notes = Diagnostics::new();
     let bar = progress(pictures.len());
     let tracks = session.tracks().to_vec();
+    notes.extend(session.plan().map(|plan| not_in_steps(plan, &tracks)).unwrap_or_default());
     let mut player = pictures.first().map(|(_, first)| Player::new(&tracks, *first, DiskFiles));
     for (path, when) in pictures {
         let output = Output::reserve(path)?;

@@ -11,7 +11,7 @@ use crate::diagnostic::{Code, Diagnostic, Diagnostics, Sources};
 use crate::engine::any_device_gone;
 use crate::files::DiskFiles;
 use crate::host::picture::PictureKind;
-use crate::host::{Cache, Job, Session, load, renderable};
+use crate::host::{Cache, Job, Session, load, not_in_steps, renderable};
 use crate::reload::{Change, Watch};
 
 pub fn run(args: &WatchArgs) -> Exit {
@@ -114,6 +114,8 @@ impl Follower<'_> {
         let began = Instant::now();
         let built = self.session.build(content)?;
         found.extend(built.diagnostics);
+        let told = self.session.plan().map(|plan| not_in_steps(plan, self.session.tracks()));
+        found.extend(told.unwrap_or_default());
         let building = began.elapsed();
         let began = Instant::now();
         let at = self.job.when.moment(self.session.tracks().first());

@@ -31,6 +31,6 @@ pub(crate) use frames::numbered_files;
 pub use inputs::Input;
 pub use live::{Due, Live, Read};
 pub use load::{Job, Loaded, load};
-pub use sequence::{Player, Track, When};
+pub use sequence::{Player, Track, When, not_in_steps};
 pub(crate) use source::named;
 pub use source::renderable;
