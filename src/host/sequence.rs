@@ -272,6 +272,7 @@ mod tests {
 
     use super::*;
     use crate::files::MemoryFiles;
+    use crate::scene::placement::{Placement, Up};
 
     fn track(rate: f64) -> Track {
         let pattern = Pattern::of(Path::new("f/p_##.csv")).expect("a pattern");
@@ -319,6 +320,15 @@ mod tests {
         assert_eq!(play(9), (Some(9), vec![]));
         assert_eq!(play(99), (None, vec![]), "the last one stays, and is there already");
         assert_eq!(play(4), (Some(4), vec![]), "back again");
+    }
+
+    #[test]
+    fn each_frame_is_taken_as_the_scene_says() {
+        let taken = Taken { placement: Placement::of_file(Up::Z, 2.0), ..Taken::default() };
+        let mut player = Player::new(&[Track { taken, ..track(25.0) }], When::Start, files());
+        let inputs = player.inputs(When::Frame(4), &mut Diagnostics::new());
+        let Some(Input::Particles(particles)) = inputs.get("particles") else { panic!("{inputs:?}") };
+        assert_eq!((particles.min, particles.max), ([0.0, 0.0, -8.0], [6.0, 0.0, -8.0]));
     }
 
     #[test]
