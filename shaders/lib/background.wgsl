@@ -2,6 +2,9 @@
 // the sky (b() of Imai 2016, equations 6 to 8).
 #import "lib/camera.wgsl"
 
+/// Whether anything stands on the floor, and so may stand in the liquid.
+override dry_stands: bool = true;
+
 var dry_color: texture_2d<f32>;
 var dry_z: texture_2d<f32>;
 var sky_cube: texture_cube<f32>;
@@ -63,11 +66,14 @@ struct Meeting {
     behind: f32,
 }
 
-/// Marches in growing steps until the ray is behind the dry scene, and halves the step. All in eye space.
+/// Marches in growing steps until the ray is behind the dry scene, and halves the step. All in eye space. A ray that
+/// goes on behind something and comes out behind what is farther takes that: it met it where it cannot be seen.
 fn meet_dry(p: vec3f, direction: vec3f, reach: f32, steps: u32) -> Meeting {
     var ends = vec2f(0.0);
     var was_behind = false;
     var least = 1.0e30;
+    // What was seen before the last place behind it, and how far that place was behind.
+    var last = vec2f(0.0);
     var meeting = Meeting(false, false, 0.0, 0.0);
     for (var k = 0u; k <= steps; k++) {
         let share = f32(k) / f32(steps);
@@ -90,10 +96,11 @@ fn meet_dry(p: vec3f, direction: vec3f, reach: f32, steps: u32) -> Meeting {
         if gap <= 0.25 * (ends.y - ends.x) + 0.01 * reach {
             return Meeting(true, false, between.x, between.y);
         }
-        if gap < least {
+        if gap < least || (was_behind && z < last.x - 0.5 * last.y) {
             least = gap;
             meeting.behind = between.y;
         }
+        last = vec2f(z, gap);
         was_behind = true;
     }
     meeting.hidden = was_behind;
@@ -112,12 +119,9 @@ fn halved(p: vec3f, direction: vec3f, step: vec2f, times: u32) -> vec2f {
     return ends;
 }
 
-/// What stands in the liquid, met by a ray on the way to where it would leave: the scene is looked for only where it
-/// hides that place.
+/// What stands in the liquid, met by a ray on the way to where it would leave.
 fn stands_within(p: vec3f, direction: vec3f, leaves: f32, steps: u32) -> Meeting {
-    let end = p + leaves * direction;
-    let z = dry_z_at(pixel_from_eye(end));
-    if z == 0.0 || end.z >= z {
+    if !dry_stands {
         return Meeting(false, false, 0.0, 0.0);
     }
     return meet_dry(p, direction, leaves, steps);

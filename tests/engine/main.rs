@@ -97,6 +97,7 @@ fn main() -> ExitCode {
         distance::of_several_bodies,
         submerged::what_stands_in_the_liquid_is_seen_through_it,
         submerged::what_stands_before_the_liquid_hides_it,
+        submerged::what_rays_pass_on_their_way_is_met,
         samples::samples_look_as_their_files_say,
         samples::the_animated_sample_moves_as_its_file_says,
         everything::files_beside_the_repository_render,
