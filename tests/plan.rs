@@ -23,4 +23,5 @@ mod plan {
     mod shipped;
     mod state;
     mod units;
+    mod unstored;
 }

@@ -5,7 +5,7 @@ use wgpu_types as wgt;
 use super::bind::Bench;
 use super::meshes::MeshVariant;
 use super::pipeline::{Pipeline, PipelineKind};
-use crate::plan::model::{ColorTarget, DepthTarget, Draw, Geometry, Pass};
+use crate::plan::model::{ColorTarget, DepthTarget, Draw, Geometry, Pass, View};
 
 #[derive(Debug)]
 pub(super) struct DrawVariant {
@@ -37,6 +37,7 @@ pub(super) struct ColorAttachment {
     pub view: wgpu::TextureView,
     pub resolve: Option<wgpu::TextureView>,
     pub load: wgt::LoadOp<wgt::Color>,
+    pub store: wgt::StoreOp,
 }
 
 #[derive(Debug)]
@@ -46,6 +47,7 @@ pub(super) struct DepthAttachment {
     /// sample them.
     pub depth: Option<wgt::LoadOp<f32>>,
     pub stencil: Option<wgt::LoadOp<u32>>,
+    pub store: wgt::StoreOp,
 }
 
 impl Bench<'_> {
@@ -91,23 +93,35 @@ impl Bench<'_> {
             None if target.discard_before && self.gpu.info().device_type != wgt::DeviceType::Cpu => {
                 wgt::LoadOp::Clear(wgt::Color::TRANSPARENT)
             }
+            // Whoever chose this draw without the first one of its render pass.
+            None if self.is_unstored(&target.view) => wgt::LoadOp::Clear(wgt::Color::TRANSPARENT),
             None => wgt::LoadOp::Load,
         };
         let resolve = target.resolve.as_ref().map(|v| self.attachment(v)).transpose()?;
-        Ok(ColorAttachment { view: self.attachment(&target.view)?, resolve, load })
+        Ok(ColorAttachment { view: self.attachment(&target.view)?, resolve, load, store: self.store(&target.view) })
     }
 
     fn depth(&self, target: &DepthTarget) -> Result<DepthAttachment, String> {
         let stencil = target.stencil.as_ref();
-        let writes_depth = target.write || target.clear.is_some();
+        let is_unstored = self.is_unstored(&target.view);
+        let writes_depth = target.write || target.clear.is_some() || is_unstored;
         let writes_stencil = stencil.is_some_and(|s| s.write_mask != 0 || s.clear.is_some());
-        let load = target.clear.map_or(wgt::LoadOp::Load, wgt::LoadOp::Clear);
+        let load = target.clear.or(is_unstored.then_some(0.0)).map_or(wgt::LoadOp::Load, wgt::LoadOp::Clear);
         let load_stencil = stencil.and_then(|s| s.clear).map_or(wgt::LoadOp::Load, wgt::LoadOp::Clear);
         Ok(DepthAttachment {
             view: self.attachment(&target.view)?,
             depth: (target.format.has_depth_aspect() && writes_depth).then_some(load),
             stencil: (target.format.has_stencil_aspect() && writes_stencil).then_some(load_stencil),
+            store: self.store(&target.view),
         })
+    }
+
+    fn is_unstored(&self, view: &View) -> bool {
+        self.pool.is_unstored(self.object(view.object))
+    }
+
+    fn store(&self, view: &View) -> wgt::StoreOp {
+        if self.is_unstored(view) { wgt::StoreOp::Discard } else { wgt::StoreOp::Store }
     }
 }
 

@@ -11,7 +11,9 @@ use super::errors;
 use super::gpu::Gpu;
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::format;
+use crate::plan::merge;
 use crate::plan::model::{ObjectId, ObjectKind, ObjectRef, Origin, PassKind, Plan, Texture};
+use crate::plan::unstored;
 
 /// A piece of memory.
 #[derive(Clone, Debug, PartialEq)]
@@ -56,6 +58,10 @@ struct Slot {
 pub(super) struct Pool {
     slots: Vec<Slot>,
     of: Vec<Handle>,
+    /// Of each object, whether its content is needed by nobody after the render pass that draws it.
+    unstored: Vec<bool>,
+    /// Whether the device has no memory for what is transient.
+    saves_transient: bool,
 }
 
 impl Pool {
@@ -74,6 +80,7 @@ impl Pool {
         state_kept: &[bool],
     ) -> Result<(Self, Cuts), Diagnostics> {
         let mut pool = Self::lay_out(gpu, plan);
+        pool.leave_unstored(gpu, plan);
         let cuts = Cuts::new(plan, &pool);
         if let Some(previous) = previous {
             pool.take_over(previous, state_kept, &cuts);
@@ -127,7 +134,50 @@ impl Pool {
                 of[id] = Some(Handle(slots.len() - 1));
             }
         }
-        Self { slots, of: of.into_iter().flatten().collect() }
+        let of: Vec<Handle> = of.into_iter().flatten().collect();
+        let saves_transient = gpu.info().transient_saves_memory == Some(true);
+        Self { slots, unstored: vec![false; of.len()], of, saves_transient }
+    }
+
+    /// Finds what no render pass has to store where draws share those as they do on this memory, and
+    /// makes it transient where nothing else lies in its memory.
+    fn leave_unstored(&mut self, gpu: &Gpu, plan: &Plan) {
+        if plan.memory.unstored.is_empty() {
+            return;
+        }
+        let mut leaders = merge::leaders(plan, &|id| self.of[id].number());
+        for cut in plan.memory.cuts(plan.memory.policy) {
+            // Its memory is that of another render pass from there on.
+            let parted = leaders.iter_mut().skip(cut.before).filter(|leader| **leader < cut.before);
+            parted.for_each(|leader| *leader = cut.before);
+        }
+        for id in unstored::unstored(plan, &leaders).intersection(&plan.memory.unstored) {
+            self.unstored[*id] = true;
+        }
+        // In a browser nobody knows whether it knows of transient textures.
+        let is_known = gpu.info().transient_saves_memory.is_some();
+        let mut all = vec![is_known; self.slots.len()];
+        for (id, handle) in self.of.iter().enumerate() {
+            all[handle.0] &= self.unstored[id];
+        }
+        for (slot, _) in self.slots.iter_mut().zip(all).filter(|(_, all)| *all) {
+            if let Description::Texture(t) = &mut slot.description
+                && (t.layers, t.mips) == (1, 1)
+            {
+                t.usages = TextureUsages::RENDER_ATTACHMENT | TextureUsages::TRANSIENT_ATTACHMENT;
+            }
+        }
+    }
+
+    /// Whether nobody needs an object's content after the render pass that draws it.
+    pub fn is_unstored(&self, object: ObjectId) -> bool {
+        self.unstored.get(object) == Some(&true)
+    }
+
+    /// Whether an object's memory can be filled from outside.
+    pub fn is_transient(&self, object: ObjectId) -> bool {
+        let description = &self.slots[self.of[object].0].description;
+        matches!(description, Description::Texture(t) if t.usages.contains(TextureUsages::TRANSIENT_ATTACHMENT))
     }
 
     /// Memory of the same path and description first, then any of the same description that
@@ -237,7 +287,18 @@ impl Pool {
 
     /// Bytes of what a handle stands for, there or not.
     pub fn bytes_of(&self, handle: Handle) -> u64 {
-        bytes(&self.slots[handle.0].description)
+        self.bytes_in(&self.slots[handle.0].description)
+    }
+
+    fn bytes_in(&self, description: &Description) -> u64 {
+        match description {
+            Description::Texture(t)
+                if self.saves_transient && t.usages.contains(TextureUsages::TRANSIENT_ATTACHMENT) =>
+            {
+                0
+            }
+            _ => bytes(description),
+        }
     }
 
     /// Puts somebody else's memory behind an object's handle. Tells whether that is news.
@@ -259,7 +320,7 @@ impl Pool {
     /// Bytes that are held, without what belongs to others.
     pub fn bytes(&self) -> u64 {
         let held = self.slots.iter().filter(|s| s.memory.is_some() && !s.foreign);
-        held.map(|s| bytes(&s.description)).sum()
+        held.map(|s| self.bytes_in(&s.description)).sum()
     }
 }
 

@@ -55,6 +55,10 @@ impl Runner {
         };
         let ObjectKind::Texture(planned) = &about.kind else { return Err(fail("is no texture")) };
         let texture = self.pool.texture(id).ok_or_else(|| fail("has no content yet"))?;
+        if self.pool.is_unstored(id) {
+            return Err(fail("is never stored: no pass needs it after it was drawn")
+                .hint("ask for it when planning, by `roots`"));
+        }
         let all = if planned.is_3d { (planned.layers >> mip).max(1) } else { planned.layers };
         let layers = layer.map_or(0..all, |l| l..l + 1);
         if mip >= planned.mips || layers.end > all {

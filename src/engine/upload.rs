@@ -144,9 +144,10 @@ impl Runner {
     /// If the device refuses a write.
     pub fn poison(&mut self, engine: &Engine) -> Result<(), Diagnostic> {
         for object in 0..self.plan.objects.len() {
-            // What the frame makes behind a cut is not there yet.
+            // What the frame makes behind a cut is not there yet, and what is never stored holds nothing.
             let is_made_later = self.cuts.is_late(self.pool.handle(object)) && self.pool.memory(object).is_none();
-            if self.plan.objects[object].origin != Origin::Frame || is_made_later {
+            let is_filled = !is_made_later && !self.pool.is_transient(object);
+            if self.plan.objects[object].origin != Origin::Frame || !is_filled {
                 continue;
             }
             match self.plan.objects[object].kind.clone() {

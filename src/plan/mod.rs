@@ -26,6 +26,7 @@ pub mod print;
 mod state;
 pub mod stats;
 mod units;
+pub mod unstored;
 mod unused;
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -229,6 +230,8 @@ fn finish(
         argument_slots,
         warnings,
     };
+    // Without shared memory the most draws share a render pass; who runs the plan looks again.
+    plan.memory.unstored = unstored::unstored(&plan, &merge::leaders(&plan, &|id| id));
     plan.choose_memory(asked).map_err(|found| *found)?;
     Ok(plan)
 }

@@ -13,6 +13,7 @@ mod poison;
 mod random;
 mod shipped;
 mod small;
+mod transient;
 mod world;
 
 use std::process::ExitCode;
@@ -35,6 +36,9 @@ fn main() -> ExitCode {
         peak::a_cut_that_is_left_out_is_caught,
         peak::memory_that_is_given_back_too_early_is_caught,
         peak::commands_of_others_are_not_cut,
+        transient::pictures_are_those_of_what_is_stored,
+        transient::a_render_pass_that_is_parted_stores,
+        transient::a_draw_alone_of_its_render_pass_clears,
         shipped::each_has_its_cases,
         shipped::imai2014::orbiting_runs_what_sees_the_camera,
         shipped::imai2014::a_parameter_runs_what_has_it_as_a_cause,

@@ -255,7 +255,11 @@ fn other(param: &Param, numbers: &mut Numbers) -> Option<Value> {
         (ParamKind::Choice(words), Value::Word(now)) => {
             Value::Word(words.iter().map(|w| &w.value).find(|word| *word != now)?.clone())
         }
-        (_, Value::Vector(now)) => Value::vec(now.iter().filter_map(|x| x.as_f64()).map(|x| x * 0.75 + 0.05)),
+        (_, Value::Vector(now)) => {
+            let is_in = |x: &f64| min.is_none_or(|min| *x >= min) && max.is_none_or(|max| *x <= max);
+            let turned = |x: f64| [x * 0.75 + 0.05, x * 1.5].into_iter().find(is_in).unwrap_or(x);
+            Value::vec(now.iter().filter_map(|x| x.as_f64()).map(turned))
+        }
         _ => return None,
     };
     (value != param.value).then_some(value)

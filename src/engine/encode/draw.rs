@@ -62,7 +62,7 @@ fn attachments<'a>(
         view: &first.view,
         depth_slice: None,
         resolve_target: last.resolve.as_ref(),
-        ops: wgt::Operations { load: first.load, store: wgt::StoreOp::Store },
+        ops: wgt::Operations { load: first.load, store: first.store },
     })
 }
 
@@ -103,7 +103,7 @@ fn depth_attachment<'a>(
     first: &'a DepthAttachment,
     parts: impl Iterator<Item = Part<'a>> + Clone,
 ) -> wgpu::RenderPassDepthStencilAttachment<'a> {
-    let store = wgt::StoreOp::Store;
+    let store = first.store;
     let all = || parts.clone().filter_map(|part| part.variant.depth.as_ref());
     let (depth, stencil) = (all().any(|d| d.depth.is_some()), all().any(|d| d.stencil.is_some()));
     wgpu::RenderPassDepthStencilAttachment {

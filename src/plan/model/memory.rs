@@ -62,6 +62,8 @@ pub struct Memory {
     pub parts: Vec<u64>,
     /// Objects that share with nobody while things are kept.
     pub apart: BTreeMap<ObjectId, Apart>,
+    /// Targets whose content nobody needs after the render pass that draws them.
+    pub unstored: BTreeSet<ObjectId>,
     /// Bytes of all objects of the frame, each on its own.
     pub unshared: u64,
     /// Bytes of the largest set that is live at once: no plan can hold less.

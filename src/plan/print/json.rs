@@ -354,6 +354,7 @@ fn resource(plan: &Plan, id: usize, object: &Object) -> Json {
         "origin": origin,
         "lifetime": object.lifetime.map(|(first, last)| [first, last]),
         "keep_slot": slot(&plan.memory.keep),
+        "transient": plan.memory.unstored.contains(&id),
         "share_slot": slot(&plan.memory.share),
         "smallest_slot": slot(&plan.memory.smallest),
     })

@@ -4,15 +4,24 @@ use std::cmp::Reverse;
 use std::fmt::Write as _;
 
 use super::describe;
+use crate::plan::memory;
 use crate::plan::model::{Cut, Memory, Plan, Policy, Slot};
 
 /// How many of the largest pieces of memory are named at a cut.
 const NAMED: usize = 4;
 
-pub(super) fn memory(plan: &Plan, out: &mut String) {
+pub(super) fn text(plan: &Plan, out: &mut String) {
     let memory = &plan.memory;
     _ = writeln!(out, "memory of the frame:");
     _ = writeln!(out, "  {:>10}  without sharing", describe::bytes(memory.unshared));
+    if !memory.unstored.is_empty() {
+        let bytes = memory.unstored.iter().map(|id| memory::bytes(&plan.objects[*id].kind)).sum();
+        let transient = describe::bytes(bytes);
+        _ = writeln!(
+            out,
+            "  {transient:>10}  of it in transient targets: no pass stores them, and a device may have no memory for them"
+        );
+    }
     for policy in Policy::ALL {
         under(plan, policy, out);
     }

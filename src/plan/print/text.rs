@@ -24,7 +24,7 @@ pub fn text(plan: &Plan) -> String {
     steps(plan, &mut out);
     resources(plan, &mut out);
     stats(plan, &mut out);
-    memory::memory(plan, &mut out);
+    memory::text(plan, &mut out);
     needs(plan, &mut out);
     params(plan, &mut out);
     files(plan, &mut out);
@@ -268,6 +268,9 @@ fn notes(plan: &Plan, id: ObjectId, shared: Option<&String>) -> Vec<String> {
     }
     if plan.outputs.iter().any(|output| rows::id(plan, output.object) == id) {
         notes.push("output".to_owned());
+    }
+    if plan.memory.unstored.contains(&id) {
+        notes.push("transient".to_owned());
     }
     notes.extend(shared.map(|label| format!("shares {label}")));
     notes
