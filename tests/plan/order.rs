@@ -1,7 +1,7 @@
 //! Program order: branches, loops, swaps, counters, steps and rings.
 
 use meniscus::graph::value::Value;
-use meniscus::plan::model::{ObjectRef, Plan};
+use meniscus::plan::model::{Bound, ObjectRef, Plan, UniformValue};
 
 use crate::planning::{Test, bound, bound_path, object, pass, paths, shader};
 
@@ -149,6 +149,54 @@ fn what_a_part_makes_of_a_counter_is_worked_out_in_each_iteration() {
     let plan = Test::new(graph).with("graphs/part.ron", part).plan();
     assert_eq!(paths(&plan), ["turn[3]", "copy"]);
     assert_eq!(shader(&plan, 0).constants, [("n".to_owned(), 24.0)], "4 * 4 + 8");
+}
+
+/// Blocks of scalars are put together once for all iterations only if no counter is in them.
+#[test]
+fn blocks_see_each_value_of_a_counter() {
+    let more = "struct Values { direct: u32, derived: u32, steady: u32 } var<uniform> values: Values;
+        var<storage, read_write> dst: array<u32>;
+        @compute @workgroup_size(64) fn main(@builtin(global_invocation_id) i: vec3<u32>) {
+            dst[i.x] += values.direct + values.derived + values.steady; }";
+    let part = r#"Graph(
+        inputs: { "dst": Buffer },
+        params: { "direct": Int(default: 0, min: 0, max: 100), "steady": Int(default: 7, min: 0, max: 100) },
+        let: { "derived": "direct * direct" },
+        passes: [ Compute(name: "more", shader: "more.wgsl", each: Item("dst")) ],
+        outputs: ["dst"],
+    )"#;
+    let graph = r#"Graph(
+        params: { "direct": Int(default: 1, min: 0, max: 100), "steady": Int(default: 7, min: 0, max: 100) },
+        resources: { "dst": Buffer(items: 8) },
+        let: { "derived": "10 + i" },
+        passes: [
+            Clear(of: "dst"),
+            Repeat(times: 3, index: "i", passes: [
+                Compute(name: "here", shader: "more.wgsl", each: Item("dst")),
+                Use(graph: "part.ron", name: "part", params: {"direct": "i + 1"}),
+                Repeat(times: 2, passes: [
+                    Use(graph: "part.ron", name: "same", params: {"direct": "4"}),
+                ]),
+            ]),
+        ],
+        outputs: ["dst"],
+    )"#;
+    let plan = Test::new(graph).with("graphs/part.ron", part).with("shaders/more.wgsl", more).plan();
+    let of = |name: &str| -> Vec<String> {
+        let named = (0..plan.passes.len()).filter(|p| plan.passes[*p].path.starts_with(name));
+        let block = |p| match shader(&plan, p).bindings.iter().find(|b| *b.name == *"values").unwrap().bound {
+            Bound::Uniform { block } => &plan.uniforms[block].members,
+            ref other => panic!("{other:?}"),
+        };
+        let told = |value: &UniformValue| match value {
+            UniformValue::Known(value) => value.to_string(),
+            UniformValue::Live(_) => "live".to_owned(),
+        };
+        named.map(|p| block(p).iter().map(|m| told(&m.value)).collect::<Vec<_>>().join(" ")).collect()
+    };
+    assert_eq!(of("here"), ["1 10 7", "1 11 7", "1 12 7"]);
+    assert_eq!(of("part/"), ["1 1 7", "2 4 7", "3 9 7"]);
+    assert_eq!(of("same/"), ["4 16 7"; 6]);
 }
 
 #[test]
