@@ -302,7 +302,8 @@ impl Bench<'_> {
             ObjectKind::Texture(_) => 0,
         };
         let path = &self.plan.passes[index].path;
-        let words = [capacity, stat_of(self.plan, index) as u32, arguments.len() as u32, 0];
+        let runs_again = u32::from(self.plan.passes[index].steps.is_some());
+        let words = [capacity, stat_of(self.plan, index) as u32, arguments.len() as u32, runs_again];
         let settle = self.constant(path, &words, wgpu::BufferUsages::UNIFORM);
         let mut consumers: Vec<u32> = arguments.iter().flat_map(consumer).collect();
         // A storage buffer holds one item at least.

@@ -118,7 +118,6 @@ impl Part {
 impl Runner {
     /// Makes what the frame's first part has; all of it if the frame cannot be cut.
     pub(super) fn begin_parts(&mut self, gpu: &Gpu, is_cut: bool) -> Result<(), Diagnostic> {
-        self.peak = self.pool.bytes();
         if self.cuts.is_empty() {
             return Ok(());
         }

@@ -54,8 +54,8 @@ pub struct Runner {
     pub(super) rings_of: Vec<Vec<usize>>,
     /// For each pass whether it is inside `Steps`, and its unit: what each frame asks of all.
     pub(super) parts: Vec<(bool, usize)>,
-    /// The passes that settle counted buffers.
-    pub(super) settles: Vec<usize>,
+    /// The passes that settle counted buffers as often as a frame has steps, each with its place among all that settle.
+    pub(super) settles: Vec<(u64, usize)>,
     /// For each pass the first one of the render pass that it may share.
     pub(super) leaders: Vec<usize>,
     pub(super) uniforms: Uniforms,
@@ -285,9 +285,10 @@ fn check_features(gpu: &Gpu, plan: &Plan) -> Result<(), Diagnostic> {
     .hint("`If(test: \"device(feature)\")` can choose another way for such devices"))
 }
 
-fn settles(plan: &Plan) -> Vec<usize> {
+fn settles(plan: &Plan) -> Vec<(u64, usize)> {
     let is_one = |index: &usize| matches!(plan.passes[*index].kind, PassKind::Settle { .. });
-    (0..plan.passes.len()).filter(is_one).collect()
+    let all = (0..).zip((0..plan.passes.len()).filter(is_one));
+    all.filter(|(_, index)| plan.passes[*index].steps.is_some()).collect()
 }
 
 fn steps_in_order(plan: &Plan) -> Vec<usize> {

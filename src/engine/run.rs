@@ -314,8 +314,8 @@ impl Runner {
     /// Clears the counts of the settling passes that run. Others keep what they counted.
     fn clear_counts(&self, encoder: &mut wgpu::CommandEncoder, chosen: Option<&[bool]>) {
         let mut run = 0..0;
-        for (stat, index) in (0..).zip(&self.settles) {
-            if chosen.is_some_and(|chosen| chosen.get(*index) == Some(&false)) {
+        for (stat, index) in self.settles.iter().copied() {
+            if chosen.is_some_and(|chosen| chosen.get(index) == Some(&false)) {
                 continue;
             }
             if run.end != stat {

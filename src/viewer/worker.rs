@@ -1,6 +1,7 @@
 //! The thread that loads, checks, plans and compiles, so that no frame waits for any of it. It
 //! watches what it last read, and answers each change and each wish with a [`Round`].
 
+use std::cell::Cell;
 use std::path::PathBuf;
 use std::sync::mpsc::{Receiver, Sender, TryRecvError, channel};
 use std::thread::{self, JoinHandle};
@@ -50,6 +51,8 @@ pub struct Round {
     pub noticing: Duration,
     pub checking: Duration,
     pub building: Duration,
+    /// Whether everything that was ordered up to now is in it.
+    pub is_last: bool,
 }
 
 #[derive(Debug)]
@@ -65,8 +68,10 @@ enum Order {
 #[derive(Debug)]
 pub struct Worker {
     orders: Option<Sender<Order>>,
+    ordered: Cell<u64>,
     waker: Waker,
-    rounds: Receiver<Round>,
+    /// Each with how many orders it has heard.
+    rounds: Receiver<(Round, u64)>,
     thread: Option<JoinHandle<()>>,
 }
 
@@ -86,6 +91,7 @@ impl Worker {
                 watch,
                 inbox,
                 outbox,
+                heard: 0,
                 news: Box::new(news),
                 job: None,
                 wants: Wants::default(),
@@ -98,7 +104,7 @@ impl Worker {
             };
             bench.work();
         });
-        Ok(Self { orders: Some(orders), waker, rounds, thread: Some(thread) })
+        Ok(Self { orders: Some(orders), ordered: Cell::new(0), waker, rounds, thread: Some(thread) })
     }
 
     pub fn open(&self, job: Job) {
@@ -119,7 +125,9 @@ impl Worker {
 
     /// A round that is done, oldest first.
     pub fn take(&self) -> Option<Round> {
-        self.rounds.try_recv().ok()
+        let (mut round, heard) = self.rounds.try_recv().ok()?;
+        round.is_last = heard == self.ordered.get();
+        Some(round)
     }
 
     /// Whether the thread has ended by a fault.
@@ -130,6 +138,7 @@ impl Worker {
     fn send(&self, order: Order) {
         if let Some(orders) = &self.orders {
             // A thread that is gone does nothing any more; the window still runs.
+            self.ordered.set(self.ordered.get() + 1);
             _ = orders.send(order);
             self.waker.wake();
         }
@@ -151,7 +160,8 @@ struct Bench {
     builder: Builder,
     watch: Watch,
     inbox: Receiver<Order>,
-    outbox: Sender<Round>,
+    outbox: Sender<(Round, u64)>,
+    heard: u64,
     news: Box<dyn Fn() + Send>,
     job: Option<Box<Job>>,
     wants: Wants,
@@ -172,7 +182,9 @@ impl Bench {
         loop {
             let (mut load, mut plan) = (None, false);
             loop {
-                match self.inbox.try_recv() {
+                let order = self.inbox.try_recv();
+                self.heard += u64::from(order.is_ok());
+                match order {
                     Ok(Order::Open(job)) => {
                         load = Some(Cause::Opened(job.source.clone()));
                         self.job = Some(job);
@@ -224,7 +236,11 @@ impl Bench {
     }
 
     fn load(&mut self, cause: Cause, noticing: Duration) {
-        let Some(mut job) = self.job.clone() else { return };
+        let Some(mut job) = self.job.clone() else {
+            // Nothing to read: who asked is told, and waits no longer.
+            self.send(self.failed(cause, Diagnostics::new(), Sources::new()));
+            return;
+        };
         // What has no camera is framed for the window that shows it.
         job.size = job.size.or(self.wants.viewport);
         let (since, began) = (SystemTime::now(), Instant::now());
@@ -305,6 +321,7 @@ impl Bench {
             noticing: Duration::ZERO,
             checking: Duration::ZERO,
             building: Duration::ZERO,
+            is_last: true,
         }
     }
 
@@ -314,7 +331,7 @@ impl Bench {
 
     fn send(&self, round: Round) {
         // A window that is gone wants no news.
-        _ = self.outbox.send(round);
+        _ = self.outbox.send((round, self.heard));
         (self.news)();
     }
 }

@@ -13,8 +13,11 @@ use crate::viewer::worker::{Cause, Round};
 
 impl Core {
     pub(super) fn take(&mut self, round: Round) {
-        self.state.busy = None;
-        let Round { cause, planned, read, mut diagnostics, sources, when, noticing, checking, building } = round;
+        let Round { cause, planned, read, mut diagnostics, sources, when, noticing, checking, building, is_last } =
+            round;
+        if is_last {
+            self.state.busy = None;
+        }
         self.answered = when;
         if planned.is_none() && diagnostics.is_empty() {
             return;
