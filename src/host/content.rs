@@ -68,16 +68,6 @@ impl Content {
         let mut inputs: BTreeMap<String, InputInfo> =
             self.present_inputs.iter().map(|(name, input)| (name.clone(), input.info())).collect();
         inputs.insert(COLOR.into(), InputInfo::Texture(color));
-        Request {
-            viewport: self.viewport,
-            params: self.present_params.clone(),
-            inputs,
-            capacities: BTreeMap::new(),
-            roots: Vec::new(),
-            stats: false,
-            memory: MemoryRequest::default(),
-            features,
-            limits,
-        }
+        Request { params: self.present_params.clone(), inputs, ..Request::new(self.viewport, features, limits) }
     }
 }

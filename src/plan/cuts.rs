@@ -7,8 +7,7 @@
 //! so there are as few as keep below the limit; each lies as late as it can, when most is over.
 //!
 //! The picture is there all the time; what else is looked at after the frame is there until the next
-//! begins. Draws that share a render pass and the
-//! passes of one `Steps` are not parted.
+//! begins. Draws that share a render pass and the passes of one `Steps` are not parted.
 
 use std::collections::HashMap;
 use std::ops::Range;

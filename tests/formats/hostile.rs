@@ -1,7 +1,7 @@
 //! Damaged files: whatever the bytes, a reader returns, and takes no more memory than they
 //! justify.
 
-use super::fuzz::{self, Random, damage, peak};
+use super::fuzz;
 use super::writers::{self, Legacy, Mode, Order, Packing, Rows, Sample, Store, Xml};
 use meniscus::scene::particles::ParticleSet;
 
@@ -75,19 +75,7 @@ fn check(name: &str, bytes: &[u8]) {
 #[test]
 fn damaged_files_neither_panic_nor_take_memory() {
     const TIMES: usize = if cfg!(debug_assertions) { 800 } else { 4000 };
-    let before = peak();
-    let mut random = Random(7);
-    for (name, seed) in seeds() {
-        for _ in 0..TIMES {
-            let mut bytes = seed.clone();
-            damage(&mut random, &mut bytes);
-            check(name, &bytes);
-        }
-    }
-    if let (Some(before), Some(after)) = (before, peak()) {
-        // Threads of other tests reserve some; a count that is believed takes tens of GiB.
-        assert!(after - before < 2 << 30, "the peak rose by {} MiB", (after - before) >> 20);
-    }
+    fuzz::damaged(&seeds(), Vec::as_slice, (7, TIMES), |name, _, bytes| check(name, bytes));
 }
 
 /// `MENISCUS_FUZZ_SECONDS=600 cargo test --test formats fuzz -- --nocapture`.

@@ -5,7 +5,7 @@ use std::io::Cursor;
 use image::{DynamicImage, ImageBuffer, ImageEncoder, ImageFormat, Rgb, Rgba};
 use meniscus::scene::image::{read, read_stored};
 
-use super::fuzz::{self, Random, damage, peak};
+use super::fuzz;
 
 fn written(image: &DynamicImage, format: ImageFormat) -> Vec<u8> {
     let mut bytes = Vec::new();
@@ -113,19 +113,7 @@ fn whole_seeds_are_read_and_cut_ones_never_panic() {
 
 #[test]
 fn damaged_pictures_neither_panic_nor_take_memory() {
-    const TIMES: u32 = 400;
-    let before = peak();
-    let mut random = Random(11);
-    for (name, seed) in seeds() {
-        for _ in 0..TIMES {
-            let mut bytes = seed.clone();
-            damage(&mut random, &mut bytes);
-            check(name, &bytes);
-        }
-    }
-    if let (Some(before), Some(after)) = (before, peak()) {
-        assert!(after - before < 2 << 30, "the peak rose by {} MiB", (after - before) >> 20);
-    }
+    fuzz::damaged(&seeds(), Vec::as_slice, (11, 400), |name, _, bytes| check(name, bytes));
 }
 
 /// `MENISCUS_FUZZ_SECONDS=600 cargo test --test formats pictures::fuzz -- --nocapture`.

@@ -9,7 +9,7 @@ use meniscus::scene::meshes::{self, Model};
 use serde_json::json;
 
 use super::build::{Builder, F32, U8, U16, bytes, png};
-use super::fuzz::{self, Random, damage, peak};
+use super::fuzz::{self, peak};
 use super::surface::{ply, vtk};
 
 /// A glTF with something of everything.
@@ -193,26 +193,19 @@ fn attempt(name: &str, bytes: Vec<u8>, files: &MemoryFiles) {
 
 #[test]
 fn damaged_files_neither_panic_nor_take_memory() {
-    const TIMES: u32 = 2000;
-    let before = peak();
-    let mut random = Random(7);
-    for (name, seed, files) in &seeds() {
-        for _ in 0..TIMES {
-            let mut bytes = seed.clone();
-            damage(&mut random, &mut bytes);
-            attempt(name, bytes, files);
-        }
-    }
-    if let (Some(before), Some(after)) = (before, peak()) {
-        assert!(after - before < 2 << 30, "the peak rose by {} MiB", (after - before) >> 20);
-    }
+    let attempt = |name: &str, (_, files): &(Vec<u8>, MemoryFiles), bytes: &[u8]| attempt(name, bytes.to_vec(), files);
+    fuzz::damaged(&with_files(), |(seed, _)| seed, (7, 2000), attempt);
 }
 
 /// `MENISCUS_FUZZ_SECONDS=600 cargo test --test meshes fuzz -- --nocapture`.
 #[test]
 fn fuzz() {
-    let seeds = seeds().into_iter().map(|(name, seed, files)| (name, (seed, files))).collect();
-    fuzz::fuzz(seeds, |(seed, _)| seed, |name, (_, files), bytes| attempt(name, bytes.to_vec(), files));
+    fuzz::fuzz(with_files(), |(seed, _)| seed, |name, (_, files), bytes| attempt(name, bytes.to_vec(), files));
+}
+
+/// Each seed with the files beside it.
+fn with_files() -> Vec<(&'static str, (Vec<u8>, MemoryFiles))> {
+    seeds().into_iter().map(|(name, seed, files)| (name, (seed, files))).collect()
 }
 
 #[test]

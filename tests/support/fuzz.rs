@@ -24,7 +24,7 @@ impl Random {
 }
 
 /// Damages a file in one of the ways that disks, transfers and ill will do.
-pub fn damage(random: &mut Random, bytes: &mut Vec<u8>) {
+fn damage(random: &mut Random, bytes: &mut Vec<u8>) {
     for _ in 0..1 + random.below(4) {
         let at = random.below(bytes.len());
         let end = (at + 1 + random.below(16)).min(bytes.len());
@@ -77,6 +77,29 @@ impl Clock {
 
 /// A small file may take no longer than this of a processor.
 const LONGEST: Duration = Duration::from_secs(2);
+
+/// Damages each seed so many times, the same way in each run. No attempt may panic, nor take memory that a count in
+/// a damaged file promises.
+pub fn damaged<S>(
+    seeds: &[(&'static str, S)],
+    bytes: fn(&S) -> &[u8],
+    (first, times): (u64, usize),
+    attempt: impl Fn(&str, &S, &[u8]),
+) {
+    let before = peak();
+    let mut random = Random(first);
+    for (name, seed) in seeds {
+        for _ in 0..times {
+            let mut bytes = bytes(seed).to_vec();
+            damage(&mut random, &mut bytes);
+            attempt(name, seed, &bytes);
+        }
+    }
+    if let (Some(before), Some(after)) = (before, peak()) {
+        // Threads of other tests reserve some; a count that is believed takes tens of GiB.
+        assert!(after - before < 2 << 30, "the peak rose by {} MiB", (after - before) >> 20);
+    }
+}
 
 /// Damages files of each loader on a thread of its own for `MENISCUS_FUZZ_SECONDS` of that thread's processor time;
 /// `MENISCUS_FUZZ_ONLY=a.json,a.ply` chooses loaders by their seeds' name. Damage heaps up, so that what is found after

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use super::read::{Case, Expected};
 use crate::diagnostic::{Code, Diagnostic};
+use crate::output::Output;
 
 /// What is wrong with a picture. With `bless` it takes the place of the expected one instead.
 pub fn compare(case: &Case, expected: &Expected, drawn: &[u8], bless: bool) -> Option<Diagnostic> {
@@ -13,8 +14,7 @@ pub fn compare(case: &Case, expected: &Expected, drawn: &[u8], bless: bool) -> O
         Diagnostic::error(Code::TEST_FAILED, message).at(expected.span, "expected so")
     };
     if bless {
-        let written = write(path, drawn).err();
-        return written.map(|why| Diagnostic::error(Code::OUTPUT, format!("cannot write `{}`: {why}", path.display())));
+        return write(path, drawn).err();
     }
     let bless_it = "`--bless` writes what comes out now; look at it before it is kept";
     let wanted = match std::fs::read(path) {
@@ -46,15 +46,12 @@ pub fn compare(case: &Case, expected: &Expected, drawn: &[u8], bless: bool) -> O
 }
 
 /// The folder is made where it is not there; the old picture stays if the new one cannot be written.
-fn write(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
+fn write(path: &Path, bytes: &[u8]) -> Result<(), Diagnostic> {
     if let Some(folder) = path.parent().filter(|folder| !folder.as_os_str().is_empty()) {
-        std::fs::create_dir_all(folder)?;
+        // What hinders it is told when the place is reserved.
+        _ = std::fs::create_dir_all(folder);
     }
-    let aside = path.with_extension("png.new");
-    std::fs::write(&aside, bytes).and_then(|()| std::fs::rename(&aside, path)).inspect_err(|_| {
-        // What could not be written whole is of no use to anybody.
-        _ = std::fs::remove_file(&aside);
-    })
+    Output::reserve(path)?.write(bytes)
 }
 
 fn decoded(bytes: &[u8]) -> Result<image::RgbImage, String> {
