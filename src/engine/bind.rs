@@ -155,14 +155,14 @@ impl Bench<'_> {
         match &pass.kind {
             PassKind::Compute { shader, dispatch } => {
                 let group = self.group(pass, pipeline, &shader.bindings, 0)?;
-                dispatched(pipeline, group, dispatch.clone())
+                Ok(Variant::Dispatch(dispatched(pipeline, group, dispatch.clone())?))
             }
             PassKind::Draw(draw) => Ok(Variant::Draw(self.draw(index, pass, pipeline, draw)?)),
             PassKind::Clear { view, value } => clear::variant(self, pass, pipeline, view, *value).map(Variant::Clear),
             PassKind::Mips { texture } => mips::variant(self, pass, pipeline, *texture).map(Variant::Mips),
             PassKind::Settle { counted, arguments } => {
-                let group = self.settle(index, pipeline, *counted, arguments)?;
-                dispatched(pipeline, Some(group), Dispatch::Groups([1; 3]))
+                let group = self.settle(index, pipeline, (*counted, arguments), pass.steps.is_some())?;
+                Ok(Variant::Dispatch(dispatched(pipeline, Some(group), Dispatch::Groups([1; 3]))?))
             }
             PassKind::Copy { .. } | PassKind::Arguments { .. } => Ok(Variant::Nothing),
         }
@@ -289,12 +289,24 @@ impl Bench<'_> {
         self.gpu.device().create_buffer_init(&wgpu::util::BufferInitDescriptor { label: Some(label), contents, usage })
     }
 
+    /// What settles a count once more, whose largest raw value is known.
+    ///
+    /// # Errors
+    /// As [`Bench::variant`].
+    pub fn settled_again(&self, index: usize, pipeline: Option<&Pipeline>) -> Result<DispatchVariant, String> {
+        let PassKind::Settle { counted, arguments } = &self.plan.passes[index].kind else {
+            return Err("it settles nothing".into());
+        };
+        let group = self.settle(index, pipeline, (*counted, arguments), true)?;
+        dispatched(pipeline, Some(group), Dispatch::Groups([1; 3]))
+    }
+
     fn settle(
         &self,
         index: usize,
         pipeline: Option<&Pipeline>,
-        counted: ObjectRef,
-        arguments: &[Argument],
+        (counted, arguments): (ObjectRef, &[Argument]),
+        runs_again: bool,
     ) -> Result<wgpu::BindGroup, String> {
         let layout = pipeline.and_then(|p| p.layout.as_ref()).ok_or("the settling kernel has no layout")?;
         let capacity = match &self.plan.objects[self.object(counted)].kind {
@@ -302,8 +314,7 @@ impl Bench<'_> {
             ObjectKind::Texture(_) => 0,
         };
         let path = &self.plan.passes[index].path;
-        let runs_again = u32::from(self.plan.passes[index].steps.is_some());
-        let words = [capacity, stat_of(self.plan, index) as u32, arguments.len() as u32, runs_again];
+        let words = [capacity, stat_of(self.plan, index) as u32, arguments.len() as u32, u32::from(runs_again)];
         let settle = self.constant(path, &words, wgpu::BufferUsages::UNIFORM);
         let mut consumers: Vec<u32> = arguments.iter().flat_map(consumer).collect();
         // A storage buffer holds one item at least.
@@ -326,11 +337,9 @@ fn dispatched(
     pipeline: Option<&Pipeline>,
     group: Option<wgpu::BindGroup>,
     dispatch: Dispatch,
-) -> Result<Variant, String> {
+) -> Result<DispatchVariant, String> {
     match pipeline.map(|p| &p.kind) {
-        Some(PipelineKind::Compute(pipeline)) => {
-            Ok(Variant::Dispatch(DispatchVariant { pipeline: pipeline.clone(), group, dispatch }))
-        }
+        Some(PipelineKind::Compute(pipeline)) => Ok(DispatchVariant { pipeline: pipeline.clone(), group, dispatch }),
         _ => Err("it has no compute pipeline".into()),
     }
 }

@@ -5,12 +5,14 @@ use std::collections::HashMap;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use super::bind::Fixed;
+use super::errors;
 use super::gpu::Gpu;
 use super::pool::{Pool, candidates};
 use super::prepare::Runner;
 use super::report::Report;
+use crate::diagnostic::Diagnostic;
 use crate::plan::changes::Changes;
-use crate::plan::model::{Dispatch, Geometry, ObjectId, Origin, Pass, PassKind, Plan};
+use crate::plan::model::{ObjectId, Origin, Pass, PassKind, Plan};
 
 /// Whose content an object has, for those that are not made by the runner's own passes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -73,11 +75,9 @@ pub(super) fn carry(plan: &Plan, pool: &Pool, previous: Option<&Runner>) -> Carr
 
 /// Copies the arguments and counts that the engine's kernels wrote to their new places: who is
 /// skipped from now on still needs them.
-pub(super) fn copy_answers(gpu: &Gpu, plan: &Plan, fixed: &Fixed, before: &Runner) {
+fn copy_answers(encoder: &mut wgpu::CommandEncoder, plan: &Plan, fixed: &Fixed, before: &Runner) -> bool {
     let slots = slots(&before.plan);
     let stats = stats(&before.plan);
-    let label = Some("carried over");
-    let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor { label });
     let mut any = false;
     for (path, slot) in self::slots(plan) {
         if let Some(was) = slots.get(path) {
@@ -92,22 +92,12 @@ pub(super) fn copy_answers(gpu: &Gpu, plan: &Plan, fixed: &Fixed, before: &Runne
             any = true;
         }
     }
-    if any {
-        gpu.queue().submit([encoder.finish()]);
-    }
+    any
 }
 
 /// The slot of each pass whose arguments come from a count or a shader.
 fn slots(plan: &Plan) -> HashMap<&str, u32> {
-    let slot = |kind: &PassKind| match kind {
-        PassKind::Compute { dispatch: Dispatch::Indirect { slot }, .. } => Some(*slot),
-        PassKind::Draw(draw) => match draw.geometry {
-            Geometry::Indirect { slot, .. } => Some(slot),
-            _ => None,
-        },
-        _ => None,
-    };
-    plan.passes.iter().filter_map(|pass| Some((pass.path.as_str(), slot(&pass.kind)?))).collect()
+    plan.passes.iter().filter_map(|pass| Some((pass.path.as_str(), pass.kind.slot()?))).collect()
 }
 
 /// The place of each settling pass's raw count. One buffer may be settled more than once.
@@ -136,6 +126,31 @@ pub(super) fn last_report(plan: &Plan, before: &Runner) -> Option<Report> {
 }
 
 impl Runner {
+    /// Gives those who are skipped from now on what the engine's kernels wrote for them under the plan before, and
+    /// those who are new the arguments that follow from counts which are there.
+    pub(super) fn take_answers(&self, gpu: &Gpu, before: &Runner) -> Result<(), Diagnostic> {
+        let label = Some("carried over");
+        let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor { label });
+        let mut any = copy_answers(&mut encoder, &self.plan, &self.fixed, before);
+        for index in self.changes.unanswered() {
+            let pass = &self.plan.passes[*index];
+            let variant =
+                errors::scoped(gpu, || self.bench(gpu).settled_again(*index, self.pipelines[*index].as_deref()))
+                    .and_then(|made| made)
+                    .map_err(|e| errors::refused("what is bound to", &pass.path, pass.span, &e))?;
+            let mut compute =
+                encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label, timestamp_writes: None });
+            compute.set_pipeline(&variant.pipeline);
+            compute.set_bind_group(0, variant.group.as_ref(), &[]);
+            compute.dispatch_workgroups(1, 1, 1);
+            any = true;
+        }
+        if any {
+            gpu.queue().submit([encoder.finish()]);
+        }
+        Ok(())
+    }
+
     /// Tells the changes what the frame to come has: values of its own, and resources whose
     /// owners do not say when they change.
     pub(super) fn notice(&mut self, live: &dyn Fn(&str) -> Option<crate::graph::value::Value>) {

@@ -140,9 +140,6 @@ impl Engine {
         let materials = Materials::new(&self.gpu, &plan, previous.map(|p| &p.materials));
         let Carried { changes, sources, stamps } = carry::carry(&plan, &pool, previous);
         let uniforms = Uniforms::new(&self.gpu, &plan, &changes)?;
-        if let Some(before) = previous {
-            carry::copy_answers(&self.gpu, &plan, &fixed, before);
-        }
         let mut runner = Runner {
             changes,
             sources,
@@ -184,6 +181,9 @@ impl Engine {
             fixed,
         };
         runner.bind_all(&self.gpu)?;
+        if let Some(before) = previous {
+            runner.take_answers(&self.gpu, before)?;
+        }
         self.gpu.check()?;
         Ok(runner)
     }

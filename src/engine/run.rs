@@ -333,7 +333,18 @@ impl Runner {
         if self.variants[index].get(key).is_some() {
             return Ok(key);
         }
-        let bench = Bench {
+        let bench = self.bench(gpu);
+        let pipeline = self.pipelines[index].as_deref();
+        let pass = &self.plan.passes[index];
+        let variant = errors::scoped(gpu, || bench.variant(index, pipeline))
+            .and_then(|made| made)
+            .map_err(|e| errors::refused("what is bound to", &pass.path, pass.span, &e))?;
+        self.variants[index].insert(key, variant);
+        Ok(key)
+    }
+
+    pub(super) fn bench<'a>(&'a self, gpu: &'a Gpu) -> Bench<'a> {
+        Bench {
             gpu,
             plan: &self.plan,
             pool: &self.pool,
@@ -342,14 +353,7 @@ impl Runner {
             rotation: &self.rotation,
             materials: &self.materials,
             by_faces: &self.by_faces,
-        };
-        let pipeline = self.pipelines[index].as_deref();
-        let pass = &self.plan.passes[index];
-        let variant = errors::scoped(gpu, || bench.variant(index, pipeline))
-            .and_then(|made| made)
-            .map_err(|e| errors::refused("what is bound to", &pass.path, pass.span, &e))?;
-        self.variants[index].insert(key, variant);
-        Ok(key)
+        }
     }
 
     /// One number for the rotations of all rings that a pass touches.

@@ -9,6 +9,7 @@
 //! Marks stay until the unit ran whole. Nothing here knows a device, and deciding allocates
 //! nothing.
 
+mod answers;
 mod carry;
 mod fingerprint;
 mod reason;
@@ -39,6 +40,8 @@ pub struct Changes {
     stepped: Vec<bool>,
     /// What each pass is.
     prints: Vec<u128>,
+    /// Passes that settle counts for others than under the plan before, and need not run.
+    unanswered: Vec<usize>,
 }
 
 /// What runs and why: for each unit marks and a row of causes.
@@ -112,6 +115,7 @@ impl Changes {
             queue: Vec::with_capacity(units),
             stepped: vec![true; plan.steps.len()],
             prints: fingerprint::passes(plan),
+            unanswered: Vec::new(),
         };
         changes.mark_all(&Reason::First);
         changes

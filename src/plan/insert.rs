@@ -3,9 +3,7 @@
 use std::collections::{BTreeSet, HashMap};
 
 use super::lower::{FlatPass, Lowering, Place};
-use super::model::{
-    Access, Argument, ArgumentKind, Dispatch, Geometry, ObjectId, ObjectKind, ObjectRef, Pass, PassKind,
-};
+use super::model::{Access, Argument, ArgumentKind, ObjectId, ObjectKind, ObjectRef, Pass, PassKind};
 
 /// What has to be made before the next reader.
 #[derive(Clone, Default)]
@@ -124,7 +122,7 @@ impl Inserter {
         for (object, kind) in flat.counted.clone() {
             let slot = self.slots;
             self.slots += 1;
-            set_slot(&mut flat.pass.kind, slot);
+            flat.pass.kind.slot_mut().into_iter().for_each(|place| *place = slot);
             let settle = self.settled.get(&object).map(|at| &mut self.out[*at].pass.kind);
             if let Some(PassKind::Settle { arguments, .. }) = settle {
                 arguments.push(Argument { slot, kind });
@@ -146,7 +144,7 @@ impl Inserter {
         let Some((from, offset, indexed)) = flat.arguments else { return };
         let slot = self.slots;
         self.slots += 1;
-        set_slot(&mut flat.pass.kind, slot);
+        flat.pass.kind.slot_mut().into_iter().for_each(|place| *place = slot);
         let access = Access { object: from, mips: 0..1, layers: 0..1, read: true, write: false, whole: false };
         let pass = Pass {
             path: format!("{} (arguments)", flat.pass.path),
@@ -173,18 +171,6 @@ impl Inserter {
 
 fn is_counted(lowering: &Lowering<'_>, object: ObjectRef) -> bool {
     matches!(&lowering.object(object).object.kind, ObjectKind::Buffer(b) if b.counted)
-}
-
-fn set_slot(kind: &mut PassKind, new: u32) {
-    match kind {
-        PassKind::Compute { dispatch: Dispatch::Indirect { slot }, .. } => *slot = new,
-        PassKind::Draw(draw) => {
-            if let Geometry::Indirect { slot, .. } = &mut draw.geometry {
-                *slot = new;
-            }
-        }
-        _ => {}
-    }
 }
 
 /// A pass of the engine before `reader`, that reads and writes one object.

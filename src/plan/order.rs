@@ -11,7 +11,7 @@ use std::ops::Range;
 
 use super::lower::{FlatPass, Lowering};
 use super::memory;
-use super::model::{Dispatch, Folded, Geometry, Moved, ObjectId, ObjectKind, ObjectRef, Order, PassKind, View};
+use super::model::{Folded, Moved, ObjectId, ObjectKind, ObjectRef, Order, PassKind, View};
 
 /// By how many parts of itself the largest live set may grow for fewer passes of the device.
 const GROWTH: u64 = 32;
@@ -203,13 +203,7 @@ fn dependencies(lowering: &Lowering<'_>) -> Vec<Vec<usize>> {
         match &flat.pass.kind {
             PassKind::Settle { arguments, .. } => slots.extend(arguments.iter().map(|a| (a.slot, p))),
             PassKind::Arguments { slot, .. } => _ = slots.insert(*slot, p),
-            PassKind::Compute { dispatch: Dispatch::Indirect { slot }, .. } => needs.extend(slots.get(slot)),
-            PassKind::Draw(draw) => {
-                if let Geometry::Indirect { slot, .. } = &draw.geometry {
-                    needs.extend(slots.get(slot));
-                }
-            }
-            _ => {}
+            kind => needs.extend(kind.slot().and_then(|slot| slots.get(&slot))),
         }
         needs.sort_unstable();
         needs.dedup();

@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, HashMap, VecDeque};
 
 use super::lower::{CauseKind, CauseSet, Lowering};
-use super::model::{Geometry, ObjectId, PassKind, Unit};
+use super::model::{ObjectId, PassKind, Unit};
 
 /// Groups the passes into units, numbers them in program order, and closes their causes. Also gives,
 /// for each unit of steps, all that it is made from, through other steps too.
@@ -30,14 +30,11 @@ pub(super) fn units(lowering: &mut Lowering<'_>) -> (Vec<Unit>, BTreeMap<usize, 
         // Arguments are copied for one draw, to a place that no name stands for.
         match &flat.pass.kind {
             PassKind::Arguments { slot, .. } => _ = copied.insert(*slot, p),
-            PassKind::Draw(draw) => {
-                if let Geometry::Indirect { slot, .. } = &draw.geometry
-                    && let Some(copy) = copied.get(slot)
-                {
+            kind => {
+                if let Some(copy) = kind.slot().and_then(|slot| copied.get(&slot)) {
                     sets.join(*copy, p);
                 }
             }
-            _ => {}
         }
     }
     let mut producers: Vec<Vec<usize>> = vec![Vec::new(); lowering.flat.len()];

@@ -25,6 +25,8 @@ use crate::world::{Numbers, objects, read};
 const VIEWPORT: [u32; 2] = [40, 30];
 /// `MENISCUS_STEPS=200` in the environment looks further.
 const STEPS: u32 = 12;
+/// Bytes that a graph may come to hold by turning its parameters: several times what each has as it is declared.
+const LARGEST: u64 = 256 << 20;
 
 pub struct Shipped<'e> {
     pub engine: &'e mut Engine,
@@ -307,8 +309,6 @@ fn parameters(engine: &mut Engine, name: &str) {
                 let moved = [Reason::Memory, Reason::Shared, Reason::Upstream];
                 let is_due = |u: &usize, why: &Reason| match why {
                     Reason::First => !before.contains(&after[*u]),
-                    // The pass that settles a count writes the arguments of the draws that the branch has.
-                    Reason::Pass => after[*u].iter().any(|path| path.ends_with("(settle)")),
                     _ => moved.contains(why),
                 };
                 ran.retain(|u| expected.contains(u) || !report.units[*u].why.iter().all(|why| is_due(u, why)));
@@ -335,7 +335,7 @@ fn another(policy: Policy, numbers: &mut Numbers) -> Policy {
 
 fn change(shipped: &mut Shipped<'_>, numbers: &mut Numbers) -> String {
     shipped.steps = 0;
-    match numbers.below(8) {
+    match numbers.below(9) {
         0 => {
             shipped.orbit(0.3);
             "orbiting".into()
@@ -364,6 +364,11 @@ fn change(shipped: &mut Shipped<'_>, numbers: &mut Numbers) -> String {
             shipped.prepare();
             format!("the policy {:?}", shipped.policy)
         }
+        6 => {
+            shipped.request.params.clear();
+            shipped.prepare();
+            "all parameters as declared".into()
+        }
         _ => {
             let params = shipped.params();
             let Some(param) = params.get(numbers.below(params.len().max(1) as u32) as usize) else {
@@ -371,7 +376,16 @@ fn change(shipped: &mut Shipped<'_>, numbers: &mut Numbers) -> String {
             };
             let Some(value) = other(param, numbers) else { return "nothing".into() };
             let said = format!("`{}` = {value}", param.path);
-            shipped.request.params.insert(param.path.clone(), value);
+            let before = shipped.request.params.insert(param.path.clone(), value);
+            let memory = shipped.plan().memory;
+            if memory.unshared + memory.outside > LARGEST {
+                // Steps by steps a size goes up to where a frame takes minutes.
+                match before {
+                    Some(before) => shipped.request.params.insert(param.path.clone(), before),
+                    None => shipped.request.params.remove(&param.path),
+                };
+                return format!("nothing, since {said} is too large");
+            }
             shipped.prepare();
             said
         }

@@ -3,7 +3,7 @@
 use meniscus::engine::{Engine, Frame, Policy, Report, Runner, StepInfo};
 use meniscus::graph::value::Value;
 use meniscus::plan::changes::{Cause, Reason};
-use meniscus::plan::model::{InputInfo, ObjectRef, Plan, Slot, Texture};
+use meniscus::plan::model::{InputInfo, ObjectRef, PassKind, Plan, Slot, Texture};
 use wgpu::TextureUsages;
 
 use crate::planning::{Test, object};
@@ -266,4 +266,71 @@ pub fn counts_of_what_was_skipped_stay(engine: &mut Engine) {
     let mut runner = prepare(engine, plan(), Some(runner));
     let report = run(engine, &mut runner, &Now { eye: 7.0, ..STILL });
     assert_eq!((ran(&report), counts(&report)), (vec!["eye"], all.to_vec()), "after a plan");
+}
+
+/// One who uses a count always, and another in a branch. More is appended than fits.
+fn branching(others: bool) -> Plan {
+    let graph = r#"Graph(
+        params: { "others": Bool(default: false) },
+        resources: { "list": Counted(capacity: 100), "a": Buffer(items: 128), "b": Buffer(items: 128) },
+        passes: [
+            Clear(of: "list"), Clear(of: "a"),
+            Compute(name: "append", shader: "append.wgsl", each: Threads(128, 1, 1)),
+            Compute(name: "use", shader: "consume.wgsl", each: Item("list"), bind: {"dst": "a"}),
+            If(test: "others", then: [
+                Clear(of: "b"),
+                Compute(name: "more", shader: "consume.wgsl", each: Item("list"), bind: {"dst": "b"}),
+            ]),
+        ],
+        outputs: ["a"],
+    )"#;
+    let test = Test::new(graph).param("others", Value::Bool(others));
+    if others { test.root("b").plan() } else { test.plan() }
+}
+
+/// What ran for a branch that was taken after a frame without it, and what its pass made of the list.
+fn branch(engine: &mut Engine, taken: Plan) -> (Report, Vec<u32>) {
+    let mut runner = prepare(engine, branching(false), None);
+    run(engine, &mut runner, &STILL);
+    // More than one plan may come between two frames.
+    for plan in [branching(true), branching(false), branching(true), taken] {
+        runner = prepare(engine, plan, Some(runner));
+    }
+    let report = run(engine, &mut runner, &STILL);
+    let bytes = runner.read_buffer(engine, runner.plan().names["b"]).unwrap();
+    (report, bytes.chunks_exact(4).map(|word| u32::from_le_bytes(word.try_into().unwrap())).collect())
+}
+
+pub fn a_branch_with_a_count_settles_nothing_anew(engine: &mut Engine) {
+    let (report, mut list) = branch(engine, branching(true));
+    let more = ran(&report);
+    assert!(more.len() == 2 && more.contains(&"more"), "the branch alone: {more:?}");
+    let counts: Vec<_> = report.counts.iter().map(|count| (count.path.as_str(), count.raw)).collect();
+    assert_eq!(counts, [("list", 128)], "how many were appended is known still");
+    let rest = list.split_off(100);
+    assert!(rest.iter().all(|word| *word == 0), "as many as fit");
+    list.sort_unstable();
+    list.dedup();
+    assert_eq!(list.len(), 100, "each is there");
+
+    let mut runner = prepare(engine, branching(true), None);
+    run(engine, &mut runner, &STILL);
+    let mut runner = prepare(engine, branching(false), Some(runner));
+    assert!(ran(&run(engine, &mut runner, &STILL)).is_empty(), "a branch that is left");
+}
+
+pub fn arguments_that_nobody_gave_are_seen(engine: &mut Engine) {
+    let mut plan = branching(true);
+    let slot = plan.passes.iter().find(|pass| pass.path == "more").unwrap().kind.slot().unwrap();
+    for pass in &mut plan.passes {
+        if let PassKind::Settle { arguments, .. } = &mut pass.kind {
+            arguments.retain(|argument| argument.slot != slot);
+        }
+    }
+    // The plans before it are sound, and so would be the arguments that go over.
+    let mut runner = prepare(engine, branching(false), None);
+    run(engine, &mut runner, &STILL);
+    let mut runner = prepare(engine, plan, Some(runner));
+    run(engine, &mut runner, &STILL);
+    assert_eq!(word(engine, &runner, "b"), 0, "nothing was dispatched");
 }

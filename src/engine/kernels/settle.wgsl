@@ -4,7 +4,7 @@ struct Settle {
     capacity: u32,
     stat: u32,
     consumers: u32,
-    // Whether it runs more than once in a frame: then the stat was cleared before, and is the largest of all.
+    // Whether it may run again for what it settled: then the stat is the largest of all.
     runs_again: u32,
 }
 

@@ -2,6 +2,7 @@
 
 use std::collections::HashMap;
 
+use super::answers::{self, Answers};
 use super::reason::Reason;
 use super::{Cause, Changes, Marks, objects};
 use crate::plan::model::{ObjectId, Plan, Policy};
@@ -20,6 +21,7 @@ impl Changes {
         let of_first: HashMap<&str, usize> = (before.units.iter().enumerate())
             .filter_map(|(u, unit)| Some((before.passes[*unit.passes.first()?].path.as_str(), u)))
             .collect();
+        let (asked, answered) = (Answers::new(plan), Answers::new(before));
         for (u, unit) in plan.units.iter().enumerate() {
             let Some(first) = unit.passes.first() else { continue };
             let Some(&was) = of_first.get(plan.passes[*first].path.as_str()) else { continue };
@@ -32,6 +34,15 @@ impl Changes {
             self.pending.marks[u] = old.pending.marks[was];
             if then.iter().zip(&unit.passes).any(|(a, b)| old.prints[*a] != self.prints[*b]) {
                 self.pending.marks[u].add(&Reason::Pass);
+            }
+            for (a, b) in then.iter().zip(&unit.passes) {
+                if !asked.are_among(*b, &answered, *a) {
+                    if answers::can_be_given_again(plan, *b, shares) {
+                        self.unanswered.push(*b);
+                    } else {
+                        self.pending.marks[u].add(&Reason::Pass);
+                    }
+                }
             }
             // Where things are not kept what is looked at may share too, and all run if one does.
             let counts = |id: ObjectId| !shares(id) || plan.memory.policy != Policy::Keep;
@@ -88,6 +99,12 @@ impl Changes {
 }
 
 impl Changes {
+    /// Passes that settle counts for others than under the plan before: what they wrote is good, but those others
+    /// have no arguments yet. They lie outside of `Steps`, and what they settled is still there.
+    pub fn unanswered(&self) -> &[usize] {
+        &self.unanswered
+    }
+
     /// How many units have something to run for.
     pub fn waiting(&self) -> usize {
         let has = |u: usize| {

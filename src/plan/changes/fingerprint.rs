@@ -8,8 +8,7 @@ use wgpu_types::{BufferUsages, TextureUsages};
 use super::objects;
 use crate::graph::expr::{Expr, ExprKind};
 use crate::plan::model::{
-    Bound, Dispatch, Geometry, ObjectId, ObjectKind, ObjectRef, Pass, PassKind, Plan, ShaderUse, UniformBlock,
-    UniformValue, each_ref,
+    Bound, ObjectId, ObjectKind, ObjectRef, Pass, PassKind, Plan, ShaderUse, UniformBlock, UniformValue, each_ref,
 };
 
 /// For each pass of a plan.
@@ -35,20 +34,12 @@ fn text(plan: &Plan, pass: &Pass, blocks: &[String], shapes: &[String]) -> Strin
             ObjectRef::Ring { index, .. } => ObjectRef::Ring { ring: 0, index },
         };
     });
+    kind.slot_mut().into_iter().for_each(|slot| *slot = 0);
     match &mut kind {
-        PassKind::Compute { shader: used, dispatch } => {
-            shader(plan, used, blocks, &mut named);
-            if let Dispatch::Indirect { slot } = dispatch {
-                *slot = 0;
-            }
-        }
-        PassKind::Draw(draw) => {
-            shader(plan, &mut draw.shader, blocks, &mut named);
-            if let Geometry::Indirect { slot, .. } = &mut draw.geometry {
-                *slot = 0;
-            }
-        }
-        PassKind::Settle { arguments, .. } => arguments.iter_mut().for_each(|argument| argument.slot = 0),
+        PassKind::Compute { shader: used, .. } => shader(plan, used, blocks, &mut named),
+        PassKind::Draw(draw) => shader(plan, &mut draw.shader, blocks, &mut named),
+        // Whom it writes arguments for is nothing to those who read the count: see `Answered`.
+        PassKind::Settle { arguments, .. } => arguments.clear(),
         PassKind::Arguments { slot, .. } => *slot = 0,
         PassKind::Clear { .. } | PassKind::Copy { .. } | PassKind::Mips { .. } => {}
     }

@@ -63,6 +63,31 @@ pub enum PassKind {
     },
 }
 
+impl PassKind {
+    /// Where a dispatch or draw has its arguments from, if not from the plan.
+    pub fn slot(&self) -> Option<u32> {
+        match self {
+            PassKind::Compute { dispatch: Dispatch::Indirect { slot }, .. } => Some(*slot),
+            PassKind::Draw(draw) => match draw.geometry {
+                Geometry::Indirect { slot, .. } => Some(slot),
+                _ => None,
+            },
+            _ => None,
+        }
+    }
+
+    pub fn slot_mut(&mut self) -> Option<&mut u32> {
+        match self {
+            PassKind::Compute { dispatch: Dispatch::Indirect { slot }, .. } => Some(slot),
+            PassKind::Draw(draw) => match &mut draw.geometry {
+                Geometry::Indirect { slot, .. } => Some(slot),
+                _ => None,
+            },
+            _ => None,
+        }
+    }
+}
+
 /// Arguments that [`PassKind::Settle`] writes to a slot, from the clamped count `n`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Argument {
