@@ -145,7 +145,6 @@ fn mesh_color(in: Vertex, is_front: bool, through: vec3f) -> vec4f {
     let roughness = clamp(material.roughness_factor * rough_metal.g, 0.04, 1.0);
     let ratio = (material.ior - 1.0) / (material.ior + 1.0);
     let f0 = mix(vec3f(ratio * ratio), base.rgb, metallic);
-    let albedo = base.rgb * (1.0 - metallic);
     let normal = bumped(in, bump.xyz, select(-1.0, 1.0, is_front));
     // Of a parallel view the eye is infinitely far behind the viewer.
     let back = select(camera.position - in.world, world_from_eye_vector(vec3f(0.0, 0.0, 1.0)), camera.orthographic != 0u);
@@ -155,12 +154,13 @@ fn mesh_color(in: Vertex, is_front: bool, through: vec3f) -> vec4f {
     let occlusion = 1.0 + material.occlusion_strength * (occluded - 1.0);
     let mirrored = textureSampleLevel(specular_specular, linear_clamp, reflect(-to_eye, normal),
         roughness * f32(params.specular_levels - 1u)).rgb;
-    // What is mirrored at the surface is not scattered below it.
     let share = sky_mirrored(f0, roughness, nv);
-    let from_sky = (1.0 - share) * albedo / PI * sky_irradiance(normal) + share * mirrored;
+    // What is mirrored at the surface is not scattered below it; only the part that is no metal scatters.
+    let scattered = (1.0 - sky_mirrored(vec3f(ratio * ratio), roughness, nv)) * base.rgb * (1.0 - metallic) / PI;
+    let from_sky = scattered * sky_irradiance(normal) + share * mirrored;
     let geometric = normalize(in.normal) * select(-1.0, 1.0, is_front);
     let sun_here = from_sun(in.world, normal, through) * select(0.0, 1.0, dot(geometric, -sun.direction) > 0.0);
-    let direct = ((1.0 - share) * albedo / PI + ggx(normal, to_eye, -sun.direction, roughness * roughness, f0)) * sun_here;
+    let direct = (scattered + ggx(normal, to_eye, -sun.direction, roughness * roughness, f0)) * sun_here;
     let color = from_sky * occlusion + direct + emitted;
     return vec4f(min(color, vec3f(60000.0)) * alpha, alpha);
 }

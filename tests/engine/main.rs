@@ -9,6 +9,7 @@ mod embed;
 mod everything;
 mod harness;
 mod lifecycle;
+mod maps;
 mod meshes;
 mod samples;
 mod shipped;
@@ -100,6 +101,10 @@ fn main() -> ExitCode {
         submerged::what_rays_pass_on_their_way_is_met,
         samples::samples_look_as_their_files_say,
         samples::the_animated_sample_moves_as_its_file_says,
+        maps::normal_maps_turn_normals,
+        maps::green_is_rough_and_blue_is_metal,
+        maps::red_keeps_the_light_of_the_sky_out,
+        maps::what_glows_needs_no_light,
         everything::files_beside_the_repository_render,
         statistics::statistics_are_what_buffers_hold,
         statistics::what_only_statistics_need_runs_when_they_are_asked_for,

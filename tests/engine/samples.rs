@@ -8,38 +8,31 @@ use std::sync::Arc;
 use glam::{DVec3, Mat4, Vec3};
 use meniscus::diagnostic::{Sources, Style, render_all};
 use meniscus::engine::Engine;
-use meniscus::files::{DiskFiles, Files};
+use meniscus::files::{DiskFiles, Files, MemoryFiles};
 use meniscus::host::{Cache, Job, Moment, Session, load};
 use meniscus::scene::meshes::{self, Model};
 
-const SIZE: [u32; 2] = [200, 150];
-const FOV_DEGREES: f64 = 40.0;
+pub const SIZE: [u32; 2] = [200, 150];
+pub const FOV_DEGREES: f64 = 40.0;
 
-/// The disk, and beside it a scene and a sky.
-struct Beside {
-    scene: String,
-    sky: Vec<u8>,
-}
+/// What a test brings, and the disk behind it.
+struct Beside(MemoryFiles);
 
 impl Files for Beside {
     fn read(&self, path: &Path) -> std::io::Result<Arc<[u8]>> {
-        match path.to_str() {
-            Some("sample.ron") => Ok(self.scene.as_bytes().into()),
-            Some("white.png") => Ok(self.sky.as_slice().into()),
-            _ => DiskFiles.read(path),
-        }
+        if self.0.exists(path) { self.0.read(path) } else { DiskFiles.read(path) }
     }
 
     fn exists(&self, path: &Path) -> bool {
-        ["sample.ron", "white.png"].iter().any(|name| path == Path::new(name)) || DiskFiles.exists(path)
+        self.0.exists(path) || DiskFiles.exists(path)
     }
 }
 
 /// From where to where a camera looks.
 #[derive(Clone, Copy)]
-struct View {
-    eye: DVec3,
-    target: DVec3,
+pub struct View {
+    pub eye: DVec3,
+    pub target: DVec3,
 }
 
 impl View {
@@ -176,21 +169,47 @@ fn model_of(path: &Path) -> Model {
     meshes::read(&meshes::gather(&DiskFiles, path, DiskFiles.read(path).unwrap())).unwrap()
 }
 
+/// A PNG of one row after the other.
+pub fn png(width: u32, texels: &[[u8; 3]]) -> Vec<u8> {
+    let mut bytes = std::io::Cursor::new(Vec::new());
+    let height = texels.len() as u32 / width;
+    let picture = image::RgbImage::from_raw(width, height, texels.as_flattened().to_vec()).unwrap();
+    picture.write_to(&mut bytes, image::ImageFormat::Png).unwrap();
+    bytes.into_inner()
+}
+
 fn drawn(engine: &mut Engine, path: &Path, view: &View, time_s: f64) -> Vec<[f32; 4]> {
-    let mut sky = std::io::Cursor::new(Vec::new());
-    let white = image::RgbImage::from_pixel(8, 4, image::Rgb([255; 3]));
-    white.write_to(&mut sky, image::ImageFormat::Png).unwrap();
+    lit(engine, MemoryFiles::default(), path, view, &Lights { sky: 255, sun: None }, time_s)
+}
+
+/// The light of an even sky, and where a sun of intensity 1 stands.
+pub struct Lights {
+    pub sky: u8,
+    pub sun: Option<DVec3>,
+}
+
+/// The light that a camera sees of a mesh file.
+pub fn lit(
+    engine: &mut Engine,
+    files: MemoryFiles,
+    path: &Path,
+    view: &View,
+    lights: &Lights,
+    time_s: f64,
+) -> Vec<[f32; 4]> {
     let triple = |v: DVec3| format!("({:?}, {:?}, {:?})", v.x, v.y, v.z);
     let scene = format!(
         "Scene(graph: \"imai2016.ron\", camera: Camera(eye: {}, target: {}, fov: {FOV_DEGREES:?}), size: ({}, {}),
-            lights: {{\"sun\": Light(direction: (0, -1, 0), intensity: 0.0)}}, environment: \"white.png\",
+            lights: {{\"sun\": Light(direction: {}, intensity: {:?})}}, environment: \"even.png\",
             meshes: {{\"meshes\": [{path:?}]}}, params: {{\"dry.floor\": false, \"antialias\": false}})",
         triple(view.eye),
         triple(view.target),
         SIZE[0],
         SIZE[1],
+        triple(-lights.sun.unwrap_or(DVec3::Y)),
+        if lights.sun.is_some() { 1.0 } else { 0.0 },
     );
-    let files = Beside { scene, sky: sky.into_inner() };
+    let files = Beside(files.with("sample.ron", scene).with("even.png", png(8, &[[lights.sky; 3]; 32])));
     let (mut sources, mut cache) = (Sources::new(), Cache::default());
     let job = Job { source: PathBuf::from("sample.ron"), ..Job::default() };
     let loaded = load(&files, &mut sources, &job, &mut cache);
