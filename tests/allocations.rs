@@ -16,6 +16,7 @@ use meniscus::files::DiskFiles;
 use meniscus::graph::value::Value;
 use meniscus::host::{Cache, Job, Live, Session, load};
 use meniscus::plan::instantiate_stand_in;
+use meniscus::plan::model::{Geometry, Pass, PassKind};
 use meniscus::scene::Camera;
 use meniscus::{check, program};
 
@@ -27,6 +28,7 @@ fn main() -> ExitCode {
         orbiting_allocates_nothing,
         steps_allocate_nothing,
         frames_of_a_window_allocate_nothing,
+        panes_of_glass_allocate_nothing,
         expressions_of_live_names_allocate_nothing,
         what_allocates_is_caught,
     ])
@@ -174,21 +176,55 @@ fn steps_allocate_nothing(engine: &mut Engine) {
 fn frames_of_a_window_allocate_nothing(_: &mut Engine) {
     for scene in ["crown_floating.ron", "dam_break_2014.ron", "pool_drop.ron", "ripples.ron"] {
         let source = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("scenes").join(scene);
-        let job = Job { source, size: Some([40, 30]), ..Job::default() };
-        let content = load(&DiskFiles, &mut Sources::new(), &job, &mut Cache::default()).content.unwrap();
-        let gpu = Gpu::open(&GpuOptions::default()).unwrap();
-        let (mut session, mut screen) = (Session::new(gpu.clone()), Screen::new(&gpu).unwrap());
-        session.build(content).unwrap();
-        let mut frame = |nth: usize| {
-            let time_s = nth as f64 / 60.0;
-            let camera = Camera { up: DVec3::Y, ..camera(nth) };
-            let live = Live { camera, time_s, delta_s: 1.0 / 60.0, frame: nth as u64, steps: &[1], only: None };
-            session.advance(&live).unwrap();
-            session.show(&live, &mut screen).unwrap();
-        };
-        (0..WARM).for_each(&mut frame);
-        nothing_of_ours(scene, || (WARM..WARM + COUNTED).for_each(&mut frame));
+        window(scene, source, |_| ());
     }
+}
+
+/// Panes of glass, which each camera sees in another order.
+fn panes_of_glass_allocate_nothing(_: &mut Engine) {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("panes");
+    std::fs::create_dir_all(&folder).unwrap();
+    let pane = "mtllib pane.mtl\nusemtl glass\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+    std::fs::write(folder.join("pane.obj"), pane).unwrap();
+    std::fs::write(folder.join("pane.mtl"), "newmtl glass\nKd 0.5 0.6 0.7\nd 0.4\n").unwrap();
+    let panes: Vec<String> = (0..40).map(|i| format!("(position: ({}, 0, {}))", i % 7, i % 11)).collect();
+    let scene = format!(
+        "Scene(graph: \"imai2016.ron\", lights: {{\"sun\": Light(direction: (0, -1, 0))}},
+            meshes: {{\"meshes\": [(file: \"pane.obj\", instances: [{}])]}})",
+        panes.join(", ")
+    );
+    let source = folder.join("panes.ron");
+    std::fs::write(&source, scene).unwrap();
+    window("panes.ron", source, |session| {
+        let blended = |pass: &Pass| match &pass.kind {
+            PassKind::Draw(draw) => match &draw.geometry {
+                Geometry::Meshes(meshes) => meshes.draws.iter().filter(|call| call.blended).count(),
+                _ => 0,
+            },
+            _ => 0,
+        };
+        let most = session.plan().unwrap().passes.iter().map(blended).max();
+        assert_eq!(most, Some(40), "each pane is drawn by itself");
+    });
+}
+
+/// Frames of a scene as a window draws them, after some that warm up.
+fn window(scene: &str, source: PathBuf, look: impl FnOnce(&Session)) {
+    let job = Job { source, size: Some([40, 30]), ..Job::default() };
+    let content = load(&DiskFiles, &mut Sources::new(), &job, &mut Cache::default()).content.unwrap();
+    let gpu = Gpu::open(&GpuOptions::default()).unwrap();
+    let (mut session, mut screen) = (Session::new(gpu.clone()), Screen::new(&gpu).unwrap());
+    session.build(content).unwrap();
+    look(&session);
+    let mut frame = |nth: usize| {
+        let time_s = nth as f64 / 60.0;
+        let camera = Camera { up: DVec3::Y, ..camera(nth) };
+        let live = Live { camera, time_s, delta_s: 1.0 / 60.0, frame: nth as u64, steps: &[1], only: None };
+        session.advance(&live).unwrap();
+        session.show(&live, &mut screen).unwrap();
+    };
+    (0..WARM).for_each(&mut frame);
+    nothing_of_ours(scene, || (WARM..WARM + COUNTED).for_each(&mut frame));
 }
 
 fn expressions_of_live_names_allocate_nothing(_: &mut Engine) {

@@ -9,7 +9,7 @@ use wgpu_types as wgt;
 use super::bind::Bench;
 use super::pipeline::{Pipeline, PipelineKind, Recipe, RecipeKind, VertexSlot};
 use super::prepare::Runner;
-use crate::plan::meshes::{Faces, MeshGeometry, VertexAttribute};
+use crate::plan::meshes::{Faces, MeshDraw, MeshGeometry, VertexAttribute};
 use crate::plan::model::{Binding, Bound, Draw, Geometry, Pass, PassKind};
 
 /// The pipelines of a pass by [`Faces::index`]; absent where nothing faces so.
@@ -129,7 +129,12 @@ impl Runner {
             let Geometry::Meshes(meshes) = &mut draw.geometry else { continue };
             if meshes.input == input {
                 let first = meshes.draws.partition_point(|call| !call.blended);
-                meshes.draws[first..].sort_by(|a, b| away(b.first_instance).total_cmp(&away(a.first_instance)));
+                let order = |a: &MeshDraw, b: &MeshDraw| {
+                    let [from_a, from_b] = [a, b].map(|call| away(call.first_instance));
+                    from_b.total_cmp(&from_a).then(a.first_instance.cmp(&b.first_instance))
+                };
+                // A stable sort would allocate, in every frame.
+                meshes.draws[first..].sort_unstable_by(order);
             }
         }
     }

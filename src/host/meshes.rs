@@ -193,17 +193,6 @@ impl Meshes {
         self.blended.len() > 1
     }
 
-    /// How far from an eye the middle of each blended instance's box is at a time, in metres.
-    pub(super) fn away_m(&self, eye: Vec3, time_s: f64) -> BTreeMap<u32, f32> {
-        let poses: Vec<Vec<Mat4>> = self.entries.iter().map(|entry| entry.pose(time_s)).collect();
-        let away = |(at, middle): &(u32, Vec3)| {
-            let instance = self.instances[*at as usize];
-            let world = self.bodies[instance.body as usize] * poses[instance.entry][instance.node];
-            (*at, world.transform_point3(*middle).distance(eye))
-        };
-        self.blended.iter().map(away).collect()
-    }
-
     fn fill_info(&mut self, parts: &[(&MeshEntry, Arc<Model>)]) {
         let (min, max) = self.bounds();
         let blended = self.info.draws.iter().filter(|draw| draw.blended).map(|draw| draw.first_instance);

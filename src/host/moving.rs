@@ -103,12 +103,13 @@ impl Moving<'_> {
     }
 
     /// What blends goes from back to front, as the camera sees it.
-    fn sort(&self, runner: &mut Runner, time_s: f64) {
+    fn sort(&mut self, runner: &mut Runner, time_s: f64) {
         for (name, input) in self.inputs {
             if let Input::Meshes(meshes) = input
                 && meshes.blends_several()
             {
-                let away_m = meshes.away_m(self.camera.eye.as_vec3(), time_s);
+                meshes.away_into(self.camera.eye.as_vec3(), time_s, self.standing);
+                let away_m = &self.standing.away_m;
                 runner.sort_blended(name, &|instance| away_m.get(&instance).copied().unwrap_or(0.0));
             }
         }

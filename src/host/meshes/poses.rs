@@ -1,8 +1,9 @@
 //! Where bodies stand at a time: the animation that each file of a scene plays.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use glam::Mat4;
+use glam::{Mat4, Vec3};
 
 use super::Meshes;
 use crate::diagnostic::{Code, Diagnostic};
@@ -21,6 +22,8 @@ pub(in crate::host) struct Standing {
     poses: Vec<Pose>,
     /// Items of `x.instances`.
     pub bytes: Vec<u8>,
+    /// How far from the eye the middle of each blended instance's box is, in metres.
+    pub away_m: BTreeMap<u32, f32>,
 }
 
 /// A mesh file of the scene, and what moves its nodes.
@@ -42,13 +45,8 @@ impl Meshes {
 
     /// The same into memory that is there.
     pub(in crate::host) fn instances_into(&self, time_s: f64, standing: &mut Standing) {
+        self.pose_into(time_s, standing);
         let Standing { poses, bytes, .. } = standing;
-        if poses.len() < self.entries.len() {
-            poses.resize_with(self.entries.len(), Pose::default);
-        }
-        for (entry, pose) in self.entries.iter().zip(&mut *poses) {
-            entry.pose_into(time_s, pose);
-        }
         bytes.clear();
         bytes.reserve(self.instances.len() * INSTANCE_BYTES as usize);
         for instance in &self.instances {
@@ -56,6 +54,26 @@ impl Meshes {
             bytes.extend_from_slice(bytemuck::bytes_of(&matrix));
             let words = [instance.body, instance.first_triangle, instance.triangles, instance.material];
             bytes.extend_from_slice(bytemuck::bytes_of(&words));
+        }
+    }
+
+    /// How far blended instances are from an eye at a time in seconds.
+    pub(in crate::host) fn away_into(&self, eye: Vec3, time_s: f64, standing: &mut Standing) {
+        self.pose_into(time_s, standing);
+        for (at, middle) in &self.blended {
+            let instance = self.instances[*at as usize];
+            let world = self.bodies[instance.body as usize] * standing.poses[instance.entry].world[instance.node];
+            standing.away_m.insert(*at, world.transform_point3(*middle).distance(eye));
+        }
+    }
+
+    fn pose_into(&self, time_s: f64, standing: &mut Standing) {
+        let poses = &mut standing.poses;
+        if poses.len() < self.entries.len() {
+            poses.resize_with(self.entries.len(), Pose::default);
+        }
+        for (entry, pose) in self.entries.iter().zip(poses) {
+            entry.pose_into(time_s, pose);
         }
     }
 }
