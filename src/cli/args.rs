@@ -43,8 +43,8 @@ pub enum Command {
 /// What `render`, `watch` and `bench` share.
 #[derive(Args, Clone, Debug)]
 pub struct SceneArgs {
-    /// A scene (.ron), or a particle file, a numbered sequence of them (dd_####.bgeo) or a mesh file (.glb, .gltf, .obj),
-    /// which then gets a default camera, light and graph
+    /// A scene (.ron), or a particle file, a numbered sequence of them (dd_####.bgeo) or a mesh file (.glb, .gltf, .obj,
+    /// .ply and .vtk with faces), which then gets a default camera, light and graph
     #[arg(value_name = "SCENE|FILE")]
     pub scene: PathBuf,
     /// The graph to use in place of the scene's

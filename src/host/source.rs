@@ -10,7 +10,7 @@ use crate::diagnostic::{Code, Diagnostic, Diagnostics, Sources};
 use crate::files::{Files, LIBRARY, library_file};
 use crate::scene::placement::Placement;
 use crate::scene::sequence::Pattern;
-use crate::scene::{self, Item, MeshEntry, Scene, particles};
+use crate::scene::{self, Item, MeshEntry, Scene, meshes, particles};
 use crate::syntax::Sp;
 
 /// The scene for particles that came without one, in the library that the program carries.
@@ -55,7 +55,7 @@ pub(super) fn read(
         let bytes = named(files, path).map_err(|error| diagnostics.push(error)).ok()?;
         let scene = scene::read(path, &bytes, sources, diagnostics)?;
         Some(Source { scene, brings: Brings::Scene })
-    } else if is_mesh(path) {
+    } else if is_mesh(files, path) {
         let mut scene = default_scene(sources, diagnostics)?;
         stand(&mut scene, job);
         Some(Source { scene, brings: Brings::Mesh })
@@ -65,9 +65,10 @@ pub(super) fn read(
     }
 }
 
-/// Whether a path names a mesh file. What may also be particles counts as those.
-fn is_mesh(path: &Path) -> bool {
-    scene::meshes::known_extension(path) && !particles::known_extension(path)
+/// Whether a path names a mesh file. What may also be particles is a mesh if it has faces.
+fn is_mesh(files: &dyn Files, path: &Path) -> bool {
+    meshes::known_extension(path)
+        && (!particles::known_extension(path) || files.read(path).is_ok_and(|bytes| meshes::has_faces(&bytes)))
 }
 
 /// Puts a mesh file into a scene that has no other.
@@ -95,7 +96,7 @@ pub fn renderable(files: &dyn Files, path: &Path) -> Result<(), Diagnostic> {
         // Says why: missing, a folder, unreadable.
         named(files, path)?;
     }
-    if is_scene(path) || particles::known_extension(path) || is_mesh(path) {
+    if is_scene(path) || particles::known_extension(path) || meshes::known_extension(path) {
         return Ok(());
     }
     let message = format!("`{}` is neither a scene (.ron) nor a particle or mesh file", path.display());
@@ -131,4 +132,27 @@ pub(crate) fn named(files: &dyn Files, path: &Path) -> Result<Arc<[u8]>, Diagnos
         }
         _ => Diagnostic::error(Code::FILE_UNREADABLE, format!("`{}` cannot be read: {error}", path.display())),
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::files::MemoryFiles;
+
+    #[test]
+    fn what_has_faces_opens_as_a_mesh() {
+        let points = "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nend_header\n0\n";
+        let surface =
+            points.replace("end_header", "element face 2\nproperty list uchar int vertex_indices\nend_header");
+        let files =
+            MemoryFiles::default().with("a.ply", points).with("b.ply", surface).with("c.obj", "").with("d.xyz", "");
+        let brings = |name: &str| {
+            let job = Job { source: name.into(), ..Job::default() };
+            read(&files, &job, &mut Sources::new(), &mut Diagnostics::new()).map(|source| source.brings)
+        };
+        assert_eq!(
+            ["a.ply", "b.ply", "c.obj", "d.xyz"].map(brings),
+            [Some(Brings::Particles), Some(Brings::Mesh), Some(Brings::Mesh), Some(Brings::Particles)]
+        );
+    }
 }

@@ -8,6 +8,7 @@
 //! justify, and what is wrong is a diagnostic that names the file and the place.
 
 mod bundle;
+mod faces;
 mod fill;
 mod gltf;
 mod model;
@@ -26,6 +27,7 @@ use crate::diagnostic::Diagnostics;
 use crate::files::Files;
 
 pub use bundle::Bundle;
+pub use faces::has_faces;
 pub use model::{
     AlphaMode, Animation, Bounds, Channel, Filter, Interpolation, Keys, Lamp, LampKind, Lens, LensKind, Local,
     Material, Mesh, Model, Node, Primitive, Sampler, TextureUse, UvTransform, Wrap,
