@@ -181,10 +181,11 @@ impl Engine {
             fixed,
         };
         runner.bind_all(&self.gpu)?;
+        self.gpu.check()?;
+        // Last, when nothing refuses the plan any more: it writes to memory that the runner before has too.
         if let Some(before) = previous {
             runner.take_answers(&self.gpu, before)?;
         }
-        self.gpu.check()?;
         Ok(runner)
     }
 

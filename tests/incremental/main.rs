@@ -34,6 +34,7 @@ fn main() -> ExitCode {
         small::everything_runs_if_asked_for,
         small::counts_of_what_was_skipped_stay,
         small::a_branch_with_a_count_settles_nothing_anew,
+        small::a_draw_of_another_count_runs,
         small::arguments_that_nobody_gave_are_seen,
         peak::a_cut_that_is_left_out_is_caught,
         peak::memory_that_is_given_back_too_early_is_caught,

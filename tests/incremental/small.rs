@@ -319,6 +319,36 @@ pub fn a_branch_with_a_count_settles_nothing_anew(engine: &mut Engine) {
     assert!(ran(&run(engine, &mut runner, &STILL)).is_empty(), "a branch that is left");
 }
 
+pub fn a_draw_of_another_count_runs(engine: &mut Engine) {
+    let plan = |vertices: u32, drawn: &str| {
+        let of = |list: &str, threads: u32, out: &str| {
+            format!(
+                r#"Clear(of: "{list}"), Clear(of: "{out}"),
+                Compute(name: "{list}", shader: "append.wgsl", each: Threads({threads}, 1, 1), bind: {{"list": "{list}"}}),
+                Compute(name: "{out}", shader: "consume.wgsl", each: Item("{list}"), bind: {{"list": "{list}", "dst": "{out}"}}),"#
+            )
+        };
+        let passes = format!(
+            r#"{}{} Draw(name: "draw", shader: "triangle.wgsl", vertices: {vertices}, instances: Each("{drawn}"),
+                color: [(to: "o", clear: 0.0)])"#,
+            of("few", 64, "a"),
+            of("many", 128, "b"),
+        );
+        let resources = r#""few": Counted(capacity: 200), "many": Counted(capacity: 200), "a": Buffer(items: 200),
+            "b": Buffer(items: 200), "o": Texture(format: R32Float, size: (4, 4))"#;
+        let looked_at = ["b", "o", "few", "many"];
+        looked_at.iter().fold(Test::of(resources, &passes, r#""a", "b", "o""#), |test, name| test.root(name)).plan()
+    };
+    let mut runner = prepare(engine, plan(3, "few"), None);
+    run(engine, &mut runner, &STILL);
+    // The count that is drawn, and how much for each, is nowhere but in the arguments.
+    for (vertices, drawn, more) in [(3, "few", &[][..]), (6, "few", &["draw"]), (6, "many", &["draw"])] {
+        runner = prepare(engine, plan(vertices, drawn), Some(runner));
+        let report = run(engine, &mut runner, &STILL);
+        assert_eq!(ran(&report), more, "{vertices} vertices for each of `{drawn}`");
+    }
+}
+
 pub fn arguments_that_nobody_gave_are_seen(engine: &mut Engine) {
     let mut plan = branching(true);
     let slot = plan.passes.iter().find(|pass| pass.path == "more").unwrap().kind.slot().unwrap();

@@ -34,12 +34,12 @@ impl<'p> Answers<'p> {
     }
 }
 
-/// Whether the count that a pass settled is there after the frame as it left it.
-pub(super) fn can_be_given_again(plan: &Plan, pass: usize, shares: &dyn Fn(ObjectId) -> bool) -> bool {
+/// Whether the count that a pass settled is as it left it, where the content of its objects is `there` after a frame.
+pub(super) fn can_be_given_again(plan: &Plan, pass: usize, there: &dyn Fn(ObjectId) -> bool) -> bool {
     let PassKind::Settle { counted, .. } = &plan.passes[pass].kind else { return false };
     let counted = objects(plan, counted);
     let mut later = plan.passes[pass + 1..].iter().flat_map(|pass| &pass.accesses).filter(|access| access.write);
     plan.passes[pass].steps.is_none()
-        && !counted.iter().any(|id| shares(*id))
+        && counted.iter().all(|id| there(*id))
         && !later.any(|access| objects(plan, &access.object).iter().any(|id| counted.contains(id)))
 }

@@ -21,7 +21,7 @@ impl Changes {
         let of_first: HashMap<&str, usize> = (before.units.iter().enumerate())
             .filter_map(|(u, unit)| Some((before.passes[*unit.passes.first()?].path.as_str(), u)))
             .collect();
-        let (asked, answered) = (Answers::new(plan), Answers::new(before));
+        let mut carried: Vec<(usize, usize)> = Vec::new();
         for (u, unit) in plan.units.iter().enumerate() {
             let Some(first) = unit.passes.first() else { continue };
             let Some(&was) = of_first.get(plan.passes[*first].path.as_str()) else { continue };
@@ -35,15 +35,6 @@ impl Changes {
             if then.iter().zip(&unit.passes).any(|(a, b)| old.prints[*a] != self.prints[*b]) {
                 self.pending.marks[u].add(&Reason::Pass);
             }
-            for (a, b) in then.iter().zip(&unit.passes) {
-                if !asked.are_among(*b, &answered, *a) {
-                    if answers::can_be_given_again(plan, *b, shares) {
-                        self.unanswered.push(*b);
-                    } else {
-                        self.pending.marks[u].add(&Reason::Pass);
-                    }
-                }
-            }
             // Where things are not kept what is looked at may share too, and all run if one does.
             let counts = |id: ObjectId| !shares(id) || plan.memory.policy != Policy::Keep;
             let lost = unit
@@ -55,8 +46,37 @@ impl Changes {
                 self.pending.marks[u].add(&Reason::Memory);
             }
             self.carry_causes(u, old, was);
+            carried.push((u, was));
         }
         self.carry_values(plan, before, old);
+        self.find_unanswered(plan, before, &carried, &|id| kept(id) && !shares(id));
+    }
+
+    /// Looks among the units that are not to run for those that settle counts for others than before. `there` says of
+    /// which objects the content is there as the unit left it.
+    fn find_unanswered(
+        &mut self,
+        plan: &Plan,
+        before: &Plan,
+        carried: &[(usize, usize)],
+        there: &dyn Fn(ObjectId) -> bool,
+    ) {
+        let (asked, answered) = (Answers::new(plan), Answers::new(before));
+        for &(u, was) in carried {
+            if self.waits(u) {
+                continue;
+            }
+            for (a, b) in before.units[was].passes.iter().zip(&plan.units[u].passes) {
+                if asked.are_among(*b, &answered, *a) {
+                    continue;
+                }
+                if answers::can_be_given_again(plan, *b, there) {
+                    self.unanswered.push(*b);
+                } else {
+                    self.pending.marks[u].add(&Reason::Pass);
+                }
+            }
+        }
     }
 
     /// What the unit had yet to run for.
@@ -107,10 +127,11 @@ impl Changes {
 
     /// How many units have something to run for.
     pub fn waiting(&self) -> usize {
-        let has = |u: usize| {
-            self.pending.marks[u] != Marks::default()
-                || self.pending.changed[u * self.words..(u + 1) * self.words].iter().any(|word| *word != 0)
-        };
-        (0..self.nodes.len()).filter(|u| has(*u)).count()
+        (0..self.nodes.len()).filter(|u| self.waits(*u)).count()
+    }
+
+    fn waits(&self, unit: usize) -> bool {
+        self.pending.marks[unit] != Marks::default()
+            || self.pending.changed[unit * self.words..(unit + 1) * self.words].iter().any(|word| *word != 0)
     }
 }

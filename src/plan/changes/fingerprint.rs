@@ -1,6 +1,7 @@
 //! What a pass is, as a number: equal for passes that do the same to things of the same names,
 //! also where two plans number their objects, modules, blocks and slots differently.
 
+use std::collections::HashMap;
 use std::fmt::Write as _;
 
 use wgpu_types::{BufferUsages, TextureUsages};
@@ -15,7 +16,25 @@ use crate::plan::model::{
 pub(super) fn passes(plan: &Plan) -> Vec<u128> {
     let blocks: Vec<String> = plan.uniforms.iter().map(block).collect();
     let shapes: Vec<String> = (0..plan.objects.len()).map(|id| shape(plan, id)).collect();
-    plan.passes.iter().map(|p| twox_hash::XxHash3_128::oneshot(text(plan, p, &blocks, &shapes).as_bytes())).collect()
+    let counts = counts(plan);
+    let print = |pass: &Pass| {
+        let mut text = text(plan, pass, &blocks, &shapes);
+        text.extend(pass.kind.slot().and_then(|slot| counts.get(&slot)).into_iter().map(String::as_str));
+        twox_hash::XxHash3_128::oneshot(text.as_bytes())
+    };
+    plan.passes.iter().map(print).collect()
+}
+
+/// What each slot's arguments follow from: that is of those who draw by them, and not of who settles.
+fn counts(plan: &Plan) -> HashMap<u32, String> {
+    let mut counts = HashMap::new();
+    for pass in &plan.passes {
+        if let PassKind::Settle { counted, arguments } = &pass.kind {
+            let names: String = objects(plan, counted).iter().map(|id| plan.objects[*id].path.as_str()).collect();
+            counts.extend(arguments.iter().map(|argument| (argument.slot, format!("|{names} {:?}", argument.kind))));
+        }
+    }
+    counts
 }
 
 /// The pass with the things that it names by number spelt out behind it.
@@ -38,7 +57,7 @@ fn text(plan: &Plan, pass: &Pass, blocks: &[String], shapes: &[String]) -> Strin
     match &mut kind {
         PassKind::Compute { shader: used, .. } => shader(plan, used, blocks, &mut named),
         PassKind::Draw(draw) => shader(plan, &mut draw.shader, blocks, &mut named),
-        // Whom it writes arguments for is nothing to those who read the count: see `Answered`.
+        // Whom it writes arguments for is nothing to those who read the count: see `counts` and `Answers`.
         PassKind::Settle { arguments, .. } => arguments.clear(),
         PassKind::Arguments { slot, .. } => *slot = 0,
         PassKind::Clear { .. } | PassKind::Copy { .. } | PassKind::Mips { .. } => {}
