@@ -44,9 +44,10 @@ enum Change {
     Poison,
     Reset,
     Roots,
+    Edit,
 }
 
-const CHANGES: [Change; 16] = [
+const CHANGES: [Change; 17] = [
     Change::Nothing,
     Change::Time,
     Change::Eye,
@@ -63,6 +64,7 @@ const CHANGES: [Change; 16] = [
     Change::Poison,
     Change::Reset,
     Change::Roots,
+    Change::Edit,
 ];
 
 fn apply(world: &mut World<'_>, numbers: &mut Numbers) -> Change {
@@ -98,9 +100,11 @@ fn apply(world: &mut World<'_>, numbers: &mut Numbers) -> Change {
         Change::Reset => world.each(&|engine, runner| runner.reset_state(engine).unwrap()),
         Change::Roots if world.graph.roots.is_empty() => world.graph.roots.clone_from(&world.graph.written),
         Change::Roots => world.graph.roots.clear(),
+        Change::Edit => _ = world.graph.edit(|n| numbers.below(n)),
         Change::Again => {}
     }
-    let plans = [Change::Times, Change::Fancy, Change::Size, Change::Again, Change::Policy, Change::Roots];
+    let plans =
+        [Change::Times, Change::Fancy, Change::Size, Change::Again, Change::Policy, Change::Roots, Change::Edit];
     if plans.contains(&change) {
         let known: BTreeSet<String> = inputs(world);
         world.prepare();

@@ -24,6 +24,24 @@ use wgpu_types::{Features, Limits, TextureUsages};
 const FORMATS: [&str; 3] = ["Rgba16Float", "R32Float", "Rgba8Unorm"];
 const SIZES: [&str; 3] = ["\"viewport\"", "(16, 16)", "(7, 5)"];
 
+/// Words that somebody may write in place of each other: how much is drawn and dispatched, what is cleared to, bound,
+/// and computed. No word is part of another.
+const EDITS: [(&str, &str); 13] = [
+    ("vertices: 1, topology: PointList", "vertices: 2, topology: PointList"),
+    ("vertices: 3, ", "vertices: 6, "),
+    ("instances: 2", "instances: 5"),
+    ("value: 3)", "value: 4)"),
+    ("value: 0.25", "value: 0.75"),
+    ("value: (0.1, ", "value: (0.9, "),
+    ("clear: 0.0)", "clear: 0.125)"),
+    ("2.5 * turn", "3.5 * turn"),
+    ("region: (1, ", "region: (2, "),
+    ("capacity: 128", "capacity: 120"),
+    ("dst[i.x] += 1u", "dst[i.x] += 2u"),
+    ("dst[i.x] = i.x;", "dst[i.x] = 9u * i.x;"),
+    ("vec4<f32>(0.5)", "vec4<f32>(0.25)"),
+];
+
 /// A graph with its shaders.
 #[derive(Clone, Debug)]
 pub struct Generated {
@@ -67,6 +85,24 @@ impl Generated {
             features,
             limits,
         }
+    }
+
+    /// Somebody writes another word into one of the files; tells which. What was written once may be taken back.
+    pub fn edit(&mut self, mut number: impl FnMut(u32) -> u32) -> Option<String> {
+        let shaders = self.shaders.iter_mut().map(|(_, text)| text);
+        let mut files: Vec<&mut String> = std::iter::once(&mut self.graph).chain(shaders).collect();
+        let words = EDITS.iter().flat_map(|(a, b)| [(*a, *b), (*b, *a)]);
+        let places: Vec<(usize, usize, (&str, &str))> = words
+            .flat_map(|(from, to)| {
+                let of = |(file, text): (usize, &&mut String)| {
+                    text.match_indices(from).map(|(at, _)| (file, at, (from, to))).collect::<Vec<_>>()
+                };
+                files.iter().enumerate().flat_map(of).collect::<Vec<_>>()
+            })
+            .collect();
+        let (file, at, (from, to)) = *places.get(number(places.len().max(1) as u32) as usize)?;
+        files[file].replace_range(at..at + from.len(), to);
+        Some(format!("`{from}` -> `{to}` at {at} of file {file}"))
     }
 
     pub fn plan(&self, request: &Request) -> Result<Plan, (Diagnostics, Sources)> {
