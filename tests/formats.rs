@@ -236,6 +236,27 @@ fn classic_bgeo_gives_back_what_was_written() {
 }
 
 #[test]
+fn a_fault_behind_the_points_of_a_classic_bgeo_takes_no_points() {
+    let sample = Sample::new(17);
+    let good = writers::classic_bgeo(&sample);
+    let name = good.windows(6).rposition(|w| w == b"pscale").unwrap();
+    // The type of the detail attribute, and an end in the middle of its definition.
+    let mut wrong = good.clone();
+    wrong[name + 8..name + 12].copy_from_slice(&77_i32.to_be_bytes());
+    for (bytes, why) in [(wrong, "expected type 0, 1, 4 or 5, found 77"), (good[..name + 9].to_vec(), "before the end")]
+    {
+        for bytes in [writers::gzip(&bytes), bytes] {
+            let set = parse("a.bgeo", &bytes).unwrap();
+            expect_position(&set, &sample, Kind::F32);
+            expect(&set, "id", 1, &Values::I32(sample.id.clone()));
+            let note = set.notes.last().unwrap();
+            assert!(note.starts_with("what follows the points is left out: byte ") && note.contains(why), "{note}");
+            assert_eq!(set.radius, None);
+        }
+    }
+}
+
+#[test]
 fn json_bgeo_gives_back_what_was_written() {
     for count in COUNTS {
         let mut sample = Sample::new(count);
@@ -364,6 +385,80 @@ fn csv_takes_the_spellings_of_several_writers() {
     let bare = parse("a.csv", b"1,2,3\n4,5,6\n").unwrap();
     assert_eq!(bare.count, 2);
     assert_eq!(bare.notes, ["there is no header line; the three columns are taken as x, y and z"]);
+}
+
+/// What `PartVTK -savecsv` of DualSPHysics writes.
+const PART_VTK: &str = "TimeStep [s];Np;Nbound;Nfixed;Nmoving;Nfloat;Nfluid\n0.05;2;0;0;0;0;2\n\n\
+    Pos.x [m];Pos.y [m];Pos.z [m];Idp;Vel.x [m/s];Vel.y [m/s];Vel.z [m/s];Rhop [kg/m^3];Type;\n\
+    1;2;3;7;0.5;0;0;1000;3;\n4;5;6;8;0.25;0;1;1001;3;\n";
+
+#[test]
+fn csv_reads_over_what_stands_before_the_header() {
+    for text in [PART_VTK.to_owned(), PART_VTK.replace(';', ","), format!("# of a run\n{PART_VTK}")] {
+        let set = parse("a.csv", text.as_bytes()).unwrap_or_else(|e| panic!("{text}: {e}"));
+        assert_eq!(*set.positions(), [[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]]);
+        expect(&set, "Idp", 1, &Values::I32(vec![7, 8]));
+        expect(&set, "Vel", 3, &Values::F64(vec![0.5, 0.0, 0.0, 0.25, 0.0, 1.0]));
+        expect(&set, "Rhop", 1, &Values::I32(vec![1000, 1001]));
+        assert_eq!(set.attributes.len(), 5, "{:?}", set.attributes);
+        let line = text.lines().position(|line| line.starts_with("Pos.x")).unwrap() + 1;
+        assert_eq!(set.notes, [format!("what stands before the header in line {line} is left out")]);
+    }
+}
+
+#[test]
+fn csv_takes_separators_at_the_end_and_spaces_between() {
+    for text in ["x,y,z,id\n1,2,3,9,\n4,5,6,8,\n", "x;y;z;id;\n1;2;3;9\n4;5;6;8;\n", "x y  z id\n 1 2 3 9\n4  5 6 8 \n"]
+    {
+        let set = parse("a.csv", text.as_bytes()).unwrap_or_else(|e| panic!("{text}: {e}"));
+        assert_eq!(*set.positions(), [[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]], "{text}");
+        expect(&set, "id", 1, &Values::I32(vec![9, 8]));
+        assert!(set.notes.is_empty(), "{:?}", set.notes);
+    }
+    // An empty cell that the header names is one.
+    let set = parse("a.csv", b"x,y,z,a\n1,2,3,\n4,5,6,7\n").unwrap();
+    assert!(set.attribute("a").unwrap().to_f32()[0].is_nan());
+    // A unit goes from a name unless two names would be the same.
+    let set = parse("a.csv", b"x,y,z,p [Pa],q [m],q [s]\n1,2,3,4,5,6\n").unwrap();
+    for (name, value) in [("p", 4), ("q [m]", 5), ("q [s]", 6)] {
+        expect(&set, name, 1, &Values::I32(vec![value]));
+    }
+}
+
+#[test]
+fn texts_may_begin_with_a_mark_and_have_letters_beyond_ascii() {
+    let sample = Sample::new(7);
+    let text = Legacy { binary: false, five: true, poly: false };
+    let xml = Xml { mode: Mode::Text, packing: Packing::None, wide: false, order: Order::Little, poly: false };
+    let csv = writers::csv(&sample);
+    let csv = csv.strip_prefix(b"\xef\xbb\xbf").unwrap();
+    let files = [
+        ("a.xyz", writers::xyz_text(&sample)),
+        ("a.csv", csv.to_vec()),
+        ("a.csv", [b"# a comment\n", csv].concat()),
+        ("a.json", writers::json(&sample, Rows::Columns)),
+        ("a.ply", writers::ply(&sample, None)),
+        ("a.vtk", writers::legacy_vtk(&sample, text)),
+        ("a.vtu", writers::xml_vtk(&sample, xml)),
+        ("a.vtu", writers::xml_vtk(&sample, Xml { mode: Mode::AppendedRaw, packing: Packing::Zlib, ..xml })),
+    ];
+    for (name, bytes) in files {
+        let plain = parse(name, &bytes).unwrap();
+        let marked = [b"\xef\xbb\xbf".to_vec(), bytes].concat();
+        assert_eq!(parse(name, &marked).unwrap_or_else(|e| panic!("{name}: {e}")), plain, "{name}");
+    }
+    // Whatever their length, of which raw numbers make something if it is a multiple of 12.
+    for comment in ["# größe".as_bytes(), b"# gr\xf6\xdfe", "# 水の粒".as_bytes()] {
+        for length in 0..12 {
+            let rows = [comment, &vec![b'.'; length], b"\n1 2 3\n4 5 6\n"].concat();
+            let set = parse("a.xyz", &rows).unwrap();
+            assert_eq!(*set.positions(), [[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]], "{}", String::from_utf8_lossy(comment));
+        }
+    }
+    // A letter across the end of what is looked at.
+    let long = [b"# ".to_vec(), "ß".repeat(5000).into_bytes(), b"\n1 2 3\n".to_vec()].concat();
+    assert_eq!(parse("a.xyz", &long).unwrap().count, 1);
+    assert_eq!(parse("a.xyz", &[&b" "[..], &long].concat()).unwrap().count, 1);
 }
 
 #[test]
@@ -515,6 +610,7 @@ fn extensions_are_known_in_any_case() {
     for name in ["a.vtk", "a.VTU", "a.vtp", "a.ply", "a.bgeo", "a.Bgeo.Gz", "a.xyz", "dir.obj/a.csv"] {
         assert!(known_extension(Path::new(name)), "{name}");
     }
+    assert!(known_extension(Path::new("a.pvd")), "to say what to name in its place");
     for name in ["a.obj", "a", "vtk", "a.vtk.gz", "", "a.vtk/", ".."] {
         assert_eq!(known_extension(Path::new(name)), name == "a.vtk/", "{name}");
     }

@@ -40,6 +40,13 @@ fn seeds() -> Vec<(&'static str, Vec<u8>)> {
     let tabs = csv.iter().map(|byte| if *byte == b',' { b'\t' } else { *byte }).collect();
     let bare = b"# no header\r\n1;2;3\r\n-nan(ind);1.#INF;\r\n\r\n4e5;.5;-0\r\n".to_vec();
     seeds.extend([("a.csv", csv), ("a.csv", tabs), ("a.csv", bare)]);
+    let spaces = b"# x\nx y  z [m] id\n 1 2 3 9\n4  5 6 8 \n".to_vec();
+    seeds.extend([("a.csv", spaces), ("a.csv", super::PART_VTK.as_bytes().to_vec())]);
+    seeds.push(("a.xyz", "\u{feff}# größe\n1 2 3\n4,5;6\n".into()));
+    seeds.push((
+        "a.pvd",
+        b"<VTKFile type=\"Collection\"><DataSet file=\"a_0.vtu\"/><DataSet file='b'/></VTKFile>".to_vec(),
+    ));
     for rows in [Rows::Bare, Rows::Objects, Rows::Columns, Rows::Flat] {
         seeds.push(("a.json", writers::json(&sample, rows)));
     }

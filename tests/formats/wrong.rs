@@ -118,7 +118,7 @@ fn xml_vtk_says_what_is_wrong() {
     let message = "line 2, column 1: expected UnstructuredGrid or PolyData, found `PUnstructuredGrid`";
     says("a.vtu", grid, message);
     let lzma = vtu("compressor=\"vtkLZMADataCompressor\"", &array("format=\"binary\">GAAA"));
-    says("a.vtu", &lzma, "the data is compressed by LZMA, which is not read");
+    says("a.vtu", &lzma, "line 2, column 1: the data is compressed by LZMA, which is not read");
     let hint = error("a.vtu", lzma.as_bytes()).hint.unwrap();
     assert_eq!(hint, "save the file with zlib or LZ4 compression or with none");
     let latin = [&file(">1 2").into_bytes()[..60], b"\xe9"].concat();
@@ -147,6 +147,29 @@ fn appended_data_must_be_there_once() {
     }
     let claimed = error("a.vtp", &bytes);
     assert!(claimed.message.contains("claim"), "{claimed}");
+}
+
+#[test]
+fn xml_vtk_says_where_the_whole_file_is_wrong() {
+    let file = |more: &str| format!("<?xml version=\"1.0\"?>\n <VTKFile type=\"PolyData\"{more}></VTKFile>");
+    says("a.vtp", file(""), "line 2, column 2: expected a `Piece`, found none");
+    let lzma = error("a.vtp", file(" compressor=\"vtkLZMADataCompressor\"").as_bytes());
+    assert_eq!(lzma.to_string(), "line 2, column 2: the data is compressed by LZMA, which is not read");
+}
+
+#[test]
+fn lists_of_files_say_which_to_name() {
+    let pvd = "<VTKFile type=\"Collection\"><Collection>\n<DataSet timestep=\"0\" part=\"0\" file=\"a/dd_0.vtu\"/>\n\
+        <DataSet timestep=\"1\" part=\"0\" file=\"a/dd_1.vtu\"/></Collection></VTKFile>";
+    let list = error("a.pvd", pvd.as_bytes());
+    assert_eq!(list.to_string(), "line 2, column 38: this lists 2 files and holds no particles itself");
+    assert_eq!(list.hint.unwrap(), "name one of them, such as `a/dd_0.vtu`, or all by `#` in place of their numbers");
+    for name in ["a.pvtu", "a.PVTP", "a.vtm"] {
+        let one = error(name, b"<PUnstructuredGrid><Piece Source='dd_0.vtu'/></PUnstructuredGrid>");
+        assert_eq!(one.message, "this lists one file and holds no particles itself");
+        assert_eq!(one.hint.unwrap(), "name `dd_0.vtu` instead");
+    }
+    says("a.pvd", "file=", "line 1, column 1: this should list files, and names none");
 }
 
 #[test]
@@ -187,7 +210,11 @@ fn ply_says_what_is_wrong() {
         "line 3, column 16: expected how many `vertex` there are, found `all`",
     );
     let no_z = xyz.replace(" z", " w");
-    says("a.ply", file(&no_z, "1 2 3\n4 5 6\n"), "element `vertex` has no properties `x`, `y` and `z`");
+    says(
+        "a.ply",
+        file(&no_z, "1 2 3\n4 5 6\n"),
+        "line 3, column 9: element `vertex` has no properties `x`, `y` and `z`",
+    );
     says(
         "a.ply",
         file(xyz, "1 2 3\n4 five 6\n"),
@@ -281,7 +308,14 @@ fn xyz_and_csv_say_what_is_wrong() {
     assert_eq!(no_position.to_string(), "line 1, column 1: no columns for the position: the header has `a`, `b`");
     assert!(no_position.hint.unwrap().starts_with("`x`, `y`, `z` or"));
     says("a.csv", "1,2,3,4\n", "line 1, column 1: expected a header line with names, found 4 numbers");
-    says("a.csv", "# nothing\n\n", "expected a header line, found the end of the file");
+    says("a.csv", "# nothing\n\n", "line 3, column 1: expected a header line, found the end of the file");
+    says("a.csv", "x,y,z\n1,2,3,,\n", "line 2, column 1: expected 3 cells as in the header, found 5");
+    says("a.csv", "# a\na,b\n1,2\n", "line 2, column 1: no columns for the position: the header has `a`, `b`");
+    let names = error("a.xyz", b"# a\nx y z\n1 2 3\n");
+    assert_eq!(names.to_string(), "line 2, column 1: expected a number, found `x`");
+    assert_eq!(names.hint.unwrap(), "a file that begins with a line of names is read with the extension .csv");
+    says("a.csv", "\u{feff}x,y,z\n1,2\n", "line 2, column 1: expected 3 cells as in the header, found 2");
+    says("a.csv", "\u{feff}a,b\n", "line 1, column 1: no columns for the position: the header has `a`, `b`");
     says("a.csv", "x,y,z\none,2,3\n", "line 2, column 1: column `x`: expected a number, found `one`");
     says("a.csv", "a,x,y,z\nb,1,2,3\nc,1,2,N/A\n", "line 3, column 7: column `z`: expected a number, found `N/A`");
     let late = super::parse("a.csv", b"x,y,z,a\n1,2,3,4\n1,2,3,four\n").unwrap();

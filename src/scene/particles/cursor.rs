@@ -3,6 +3,9 @@
 use super::error::{Place, ReadError, counted, shown};
 use super::values::{Kind, Values};
 
+/// With which some programs begin a text in UTF-8.
+const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
+
 #[derive(Clone, Debug)]
 pub(super) struct Cursor<'a> {
     bytes: &'a [u8],
@@ -12,6 +15,11 @@ pub(super) struct Cursor<'a> {
 impl<'a> Cursor<'a> {
     pub fn new(bytes: &'a [u8]) -> Self {
         Self { bytes, at: 0 }
+    }
+
+    /// A cursor at the start of a text, behind the mark that some programs begin one with.
+    pub fn of_text(bytes: &'a [u8]) -> Self {
+        Self { bytes, at: if bytes.starts_with(BYTE_ORDER_MARK) { BYTE_ORDER_MARK.len() } else { 0 } }
     }
 
     /// A cursor that begins at a byte of a file.
@@ -145,7 +153,12 @@ impl<'a> Cursor<'a> {
 
     /// An error at the word that was just read.
     pub fn text_error_before(&self, word: &[u8], message: impl Into<String>) -> ReadError {
-        ReadError::new(message).at(Place::in_text(self.bytes, self.at.saturating_sub(word.len())))
+        self.text_error_at(self.at.saturating_sub(word.len()), message)
+    }
+
+    /// An error at the line and column of a byte.
+    pub fn text_error_at(&self, at: usize, message: impl Into<String>) -> ReadError {
+        ReadError::new(message).at(Place::in_text(self.bytes, at))
     }
 }
 

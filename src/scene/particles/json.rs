@@ -7,6 +7,7 @@
 use std::collections::HashMap;
 
 use super::Attribute;
+use super::cursor::Cursor;
 use super::error::{Place, ReadError, counted, shown};
 use super::finish::Found;
 use super::group::{group, means_position};
@@ -19,10 +20,8 @@ const DEEPEST: usize = 16;
 const MOST_COLUMNS: usize = 1024;
 
 pub(super) fn read(bytes: &[u8]) -> Result<Found, ReadError> {
-    let mut reader = Reader { bytes, at: 0, columns: Vec::new(), index: HashMap::new(), globals: Vec::new() };
-    if bytes.starts_with(b"\xef\xbb\xbf") {
-        reader.at = 3;
-    }
+    let at = Cursor::of_text(bytes).offset();
+    let mut reader = Reader { bytes, at, columns: Vec::new(), index: HashMap::new(), globals: Vec::new() };
     reader.value("position", Role::Outside, 0)?;
     if let Some(more) = reader.peek() {
         return Err(reader.error(format!("expected the end of the file, found {}", shown(&[more]))));

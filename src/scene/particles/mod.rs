@@ -15,6 +15,7 @@ mod finish;
 mod group;
 mod json;
 mod legacy_vtk;
+mod lists;
 mod parallel;
 mod pdb;
 mod ply;
@@ -124,7 +125,8 @@ const READERS: &[(&str, Reader)] = &[
 fn reader_for(path: &Path) -> Option<Reader> {
     let name = path.file_name()?.to_string_lossy().to_ascii_lowercase();
     let ends = |end: &str| name.strip_suffix(end).is_some_and(|stem| stem.ends_with('.'));
-    READERS.iter().find(|(end, _)| ends(end)).map(|(_, reader)| *reader)
+    let reader = READERS.iter().find(|(end, _)| ends(end)).map(|(_, reader)| *reader);
+    reader.or_else(|| lists::EXTENSIONS.iter().any(|end| ends(end)).then_some(lists::read as Reader))
 }
 
 /// The ends of the names of particle files, each with its dot.
@@ -132,7 +134,7 @@ pub fn extensions() -> impl Iterator<Item = String> {
     READERS.iter().map(|(end, _)| format!(".{end}"))
 }
 
-/// Whether [`read`] knows files of this name.
+/// Whether [`read`] knows files of this name, if only to say which other file to name.
 pub fn known_extension(path: &Path) -> bool {
     reader_for(path).is_some()
 }

@@ -10,6 +10,10 @@ const LEAF: usize = 24;
 /// Particles whose middle one tells where a box is split.
 const PIVOTS: usize = 31;
 
+/// Halvings by the middle of a few. Points in an order that makes these uneven are halved by the
+/// middle of all from there on, which takes longer, so that no order makes the tree deep.
+const DEEPEST: usize = 64;
+
 /// Neighbours whose room tells the spacing: enough to even out how they lie, few enough to be
 /// all around a particle inside.
 const NEIGHBOURS: usize = 32;
@@ -27,7 +31,7 @@ pub fn estimate_radius(positions: &[[f32; 3]]) -> Option<f32> {
     let mut points: Vec<[f32; 3]> = positions.iter().filter(finite).copied().collect();
     let samples = points.len().min(SAMPLES);
     let asked: Vec<[f32; 3]> = (0..samples).map(|i| points[i * points.len() / samples]).collect();
-    let tree = Tree::new(&mut points)?;
+    let tree = Tree::new(&mut points, DEEPEST)?;
     let enough = positions.len() >= 8 * NEIGHBOURS;
     let many = enough.then(|| points_amid(&tree, &asked, NEIGHBOURS)).flatten();
     let spacing = match many {
@@ -71,12 +75,12 @@ struct Tree<'a> {
 
 impl<'a> Tree<'a> {
     /// Sorts finite points into boxes; none without a point.
-    fn new(points: &'a mut [[f32; 3]]) -> Option<Self> {
+    fn new(points: &'a mut [[f32; 3]], deepest: usize) -> Option<Self> {
         if points.is_empty() {
             return None;
         }
         let mut nodes = Vec::with_capacity(4 * points.len() / LEAF + 1);
-        split(points, 0, &mut nodes);
+        split(points, 0, &mut nodes, deepest);
         Some(Self { points, nodes })
     }
 
@@ -125,8 +129,9 @@ fn squared(a: [f32; 3], b: [f32; 3]) -> f64 {
     x * x + y * y + z * z
 }
 
-/// Appends the boxes of `points`, of which `start` others are before them.
-fn split(points: &mut [[f32; 3]], start: usize, nodes: &mut Vec<Node>) {
+/// Appends the boxes of `points`, of which `start` others are before them. `few` more halvings are by
+/// the middle of a few.
+fn split(points: &mut [[f32; 3]], start: usize, nodes: &mut Vec<Node>, few: usize) {
     let (min, max) = bounds(points);
     let this = nodes.len();
     let same_place = min == max;
@@ -136,11 +141,12 @@ fn split(points: &mut [[f32; 3]], start: usize, nodes: &mut Vec<Node>) {
         return;
     }
     let axis = widest(min, max);
-    let middle = partition(points, axis, min[axis], max[axis]);
+    let middle = if few > 0 { partition(points, axis, min[axis], max[axis]) } else { halve(points, axis) };
+    let few = few.saturating_sub(1);
     let (first, second) = points.split_at_mut(middle);
-    split(first, start, nodes);
+    split(first, start, nodes, few);
     nodes[this].second = Some(nodes.len());
-    split(second, start + middle, nodes);
+    split(second, start + middle, nodes, few);
 }
 
 fn bounds(points: &[[f32; 3]]) -> ([f32; 3], [f32; 3]) {
@@ -177,4 +183,70 @@ fn partition(points: &mut [[f32; 3]], axis: usize, min: f32, max: f32) -> usize 
         front += usize::from(lower);
     }
     front
+}
+
+/// Moves the lower half along an axis to the front; how many that is.
+fn halve(points: &mut [[f32; 3]], axis: usize) -> usize {
+    let middle = points.len() / 2;
+    points.select_nth_unstable_by(middle, |a, b| a[axis].total_cmp(&b[axis]));
+    middle
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Points on a line in an order in which each halving cuts off only 16 of them: where it looks
+    /// for a middle, the 16 lowest of all stand.
+    fn worst_order(count: usize) -> Vec<[f32; 3]> {
+        let mut places: Vec<usize> = (0..count).collect();
+        let mut points = vec![[f32::MAX, 0.0, 0.0]; count];
+        let mut next = 0.0;
+        let mut rest = places.as_mut_slice();
+        while rest.len() > 4 * PIVOTS {
+            let count = rest.len();
+            for at in (0..=PIVOTS / 2).map(|i| i * count / PIVOTS) {
+                points[rest[at]][0] = next;
+                next += 1.0;
+            }
+            // As a partition moves them.
+            let mut front = 0;
+            for at in 0..rest.len() {
+                let is_lower = points[rest[at]][0] < next;
+                rest.swap(at, front);
+                front += usize::from(is_lower);
+            }
+            rest = &mut rest[front..];
+        }
+        for &place in rest.iter() {
+            points[place][0] = next;
+            next += 1.0;
+        }
+        points
+    }
+
+    fn depth(tree: &Tree<'_>) -> usize {
+        let mut deepest = 0;
+        let mut open = vec![(0, 1)];
+        while let Some((index, depth)) = open.pop() {
+            deepest = deepest.max(depth);
+            open.extend(tree.nodes[index].second.into_iter().flat_map(|n| [(index + 1, depth + 1), (n, depth + 1)]));
+        }
+        deepest
+    }
+
+    #[test]
+    fn no_order_makes_the_tree_deep() {
+        let mut points = worst_order(16_000);
+        let boundless = depth(&Tree::new(&mut points.clone(), usize::MAX).expect("points"));
+        assert!(boundless > 900, "the order is none of the worst: {boundless}");
+        let bounded = depth(&Tree::new(&mut points, DEEPEST).expect("points"));
+        assert!(bounded <= DEEPEST + 12, "{bounded}");
+        // Points on a line, one apart: of those inside, 16 on either side.
+        let radius = estimate_radius(&worst_order(16_000)).expect("a radius");
+        let mut sorted: Vec<[f32; 3]> = (0..16_000_u16).map(|x| [f32::from(x), 0.0, 0.0]).collect();
+        assert_eq!(Some(radius), estimate_radius(&sorted));
+        sorted.reverse();
+        assert_eq!(Some(radius), estimate_radius(&sorted));
+    }
 }

@@ -27,6 +27,8 @@ pub(super) trait Number: Copy + Default + PartialEq + Send {
     /// Appends all whole numbers that `bytes` holds.
     fn extend(out: &mut Vec<Self>, bytes: &[u8], order: Order);
     fn from_text(word: &str) -> Option<Self>;
+    /// The nearest that the type has.
+    fn from_whole(number: i64) -> Self;
     fn as_f64(self) -> f64;
     fn as_f32(self) -> f32;
     fn as_i32(self) -> i32;
@@ -94,6 +96,9 @@ macro_rules! float {
             fn from_text(word: &str) -> Option<Self> {
                 word.parse().ok().or_else(|| unusual_float(word).map(|v| v as $type))
             }
+            fn from_whole(number: i64) -> Self {
+                number as $type
+            }
             // `as` between a float and an integer takes the nearest value that the type has.
             fn as_i32(self) -> i32 {
                 self as i32
@@ -111,6 +116,10 @@ macro_rules! integer {
             bytes_of!($type);
             fn from_text(word: &str) -> Option<Self> {
                 word.parse().ok()
+            }
+            // `as` from a wider integer to a narrower one would take its low bits.
+            fn from_whole(number: i64) -> Self {
+                i128::from(number).clamp(<$type>::MIN.into(), <$type>::MAX.into()) as $type
             }
             fn as_i32(self) -> i32 {
                 i128::from(self).clamp(i32::MIN.into(), i32::MAX.into()) as i32
@@ -190,7 +199,7 @@ macro_rules! kinds {
 
             /// Appends a number of another type, as near as this one can be to it.
             pub(super) fn push_whole(&mut self, number: i64) {
-                match self { $(Self::$kind(v) => v.push(number as $type),)* }
+                match self { $(Self::$kind(v) => v.push(<$type>::from_whole(number)),)* }
             }
 
             /// See [`Values::push_whole`].
@@ -339,4 +348,26 @@ fn retain_rows<T>(values: &mut Vec<T>, keep: &[bool], components: usize) {
         number += 1;
         keep.get(row).copied().unwrap_or(false)
     });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_number_of_another_type_becomes_the_nearest() {
+        let pushed = |kind: Kind| {
+            let mut values = Values::empty(kind);
+            [300, -300, i64::MAX, i64::MIN, 7].into_iter().for_each(|whole| values.push_whole(whole));
+            [300.5, -300.5, f64::INFINITY].into_iter().for_each(|real| values.push_real(real));
+            values
+        };
+        assert_eq!(pushed(Kind::U8), Values::U8(vec![255, 0, 255, 0, 7, 255, 0, 255]));
+        assert_eq!(pushed(Kind::I8), Values::I8(vec![127, -128, 127, -128, 7, 127, -128, 127]));
+        let (min, max) = (i32::MIN, i32::MAX);
+        assert_eq!(pushed(Kind::I32), Values::I32(vec![300, -300, max, min, 7, 300, -300, max]));
+        assert_eq!(pushed(Kind::U64).len(), 8);
+        let floats = vec![300.0, -300.0, i64::MAX as f64, i64::MIN as f64, 7.0, 300.5, -300.5, f64::INFINITY];
+        assert_eq!(pushed(Kind::F64), Values::F64(floats));
+    }
 }

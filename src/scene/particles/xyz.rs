@@ -9,10 +9,29 @@ pub(super) fn read(bytes: &[u8]) -> Result<Found, ReadError> {
     if looks_like_text(bytes) { text(bytes) } else { raw(bytes) }
 }
 
-/// Whether the start of the file has only what a text of numbers and comments has.
+/// Whether the start of the file has only what a text has: no control characters, and letters beyond
+/// ASCII in UTF-8, or of any code in comments. Raw numbers have zeros or halves of letters soon.
 fn looks_like_text(bytes: &[u8]) -> bool {
-    let start = &bytes[..bytes.len().min(4096)];
-    start.iter().all(|&b| b.is_ascii_graphic() || matches!(b, b' ' | b'\t' | b'\r' | b'\n'))
+    const LOOKED_AT: usize = 4096;
+    let start = &bytes[..bytes.len().min(LOOKED_AT)];
+    if start.iter().any(|b| b.is_ascii_control() && !matches!(b, b'\t' | b'\r' | b'\n')) {
+        return false;
+    }
+    let is_text = match std::str::from_utf8(start) {
+        Ok(text) => !text.contains(is_rare_control),
+        // The last letter may be cut where no more is looked at.
+        Err(error) => error.error_len().is_none() && bytes.len() > LOOKED_AT,
+    };
+    is_text || start.split(|&b| b == b'\n').all(|line| uncommented(line).is_ascii())
+}
+
+/// Control characters beyond ASCII, which no text has.
+fn is_rare_control(c: char) -> bool {
+    c.is_control() && !c.is_ascii()
+}
+
+fn uncommented(line: &[u8]) -> &[u8] {
+    line.split(|&b| b == b'#').next().unwrap_or_default()
 }
 
 fn raw(bytes: &[u8]) -> Result<Found, ReadError> {
@@ -29,19 +48,22 @@ fn raw(bytes: &[u8]) -> Result<Found, ReadError> {
     Ok(Found::new(Values::gather(Kind::F32, bytes, layout, bytes.len() / ROW, Order::Little)))
 }
 
+const NAMES_ARE_CSV: &str = "a file that begins with a line of names is read with the extension .csv";
+
 /// Three numbers a line, between them white space, commas or semicolons; `#` begins a comment.
 fn text(bytes: &[u8]) -> Result<Found, ReadError> {
-    let mut cursor = Cursor::new(bytes);
+    let mut cursor = Cursor::of_text(bytes);
     let mut values = Values::empty(Kind::F64);
     loop {
         let start = cursor.offset();
         let Some(line) = cursor.line() else { break };
-        let line = line.split(|&b| b == b'#').next().unwrap_or_default();
         let mut count = 0;
-        for (at, word) in words(line) {
+        for (at, word) in words(uncommented(line)) {
             if !values.push_text(word) {
                 let message = format!("expected a number, found {}", shown(word));
-                return Err(ReadError::new(message).at(Place::in_text(bytes, start + at)));
+                let error = ReadError::new(message).at(Place::in_text(bytes, start + at));
+                let is_header = values.is_empty() && word.first().is_some_and(u8::is_ascii_alphabetic);
+                return Err(if is_header { error.hint(NAMES_ARE_CSV) } else { error });
             }
             count += 1;
         }

@@ -47,8 +47,10 @@ pub(super) fn read(stream: &mut Stream<'_>) -> Result<Found, ReadError> {
         found.attributes.push(Attribute { name, components, values });
         start += components * 4;
     }
-    if counts.detail_attributes > 0 && skip_primitives(stream, &counts)? {
-        found.globals = details(stream, &counts)?;
+    // The points are whole: a fault behind them takes nothing but what stands there.
+    match after_points(stream, &counts) {
+        Ok(globals) => found.globals = globals,
+        Err(wrong) => notes.push(format!("what follows the points is left out: {wrong}")),
     }
     found.notes = notes;
     Ok(found)
@@ -133,6 +135,14 @@ fn skip_primitives(stream: &mut Stream<'_>, counts: &Counts) -> Result<bool, Rea
         stream.take(members.saturating_mul(index).saturating_add(row), "a list of particles")?;
     }
     Ok(true)
+}
+
+/// Single numbers for the whole file, where they can be found.
+fn after_points(stream: &mut Stream<'_>, counts: &Counts) -> Result<Vec<(String, f64)>, ReadError> {
+    if counts.detail_attributes == 0 || !skip_primitives(stream, counts)? {
+        return Ok(Vec::new());
+    }
+    details(stream, counts)
 }
 
 /// Single numbers among the values for the whole file.

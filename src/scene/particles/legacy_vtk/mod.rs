@@ -72,7 +72,7 @@ fn read_all(mut reader: Reader<'_>) -> Result<(Found, Option<Cells>), ReadError>
 
 /// Reads the four lines that every file begins with.
 fn open(bytes: &[u8]) -> Result<Reader<'_>, ReadError> {
-    let mut cursor = Cursor::new(bytes);
+    let mut cursor = Cursor::of_text(bytes);
     let first = cursor.finish_line();
     let version = first.strip_prefix(b"# vtk DataFile Version ").and_then(|v| std::str::from_utf8(v).ok());
     let Some(version) = version.map(str::trim) else {

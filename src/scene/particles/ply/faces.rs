@@ -10,12 +10,15 @@ const LISTS: &[&str] = &["vertex_indices", "vertex_index"];
 
 /// The vertices of a file and the faces between them.
 pub fn read_surface(bytes: &[u8]) -> Result<(Found, Polygons), ReadError> {
-    let mut cursor = Cursor::new(bytes);
+    let mut cursor = Cursor::of_text(bytes);
     let (format, elements) = header(&mut cursor)?;
     let (mut found, mut faces) = (None, None);
     for element in &elements {
         match element.name.as_str() {
-            "vertex" if found.is_none() => found = Some(assemble(element, columns(&mut cursor, element, format)?)?),
+            "vertex" if found.is_none() => {
+                let columns = columns(&mut cursor, element, format)?;
+                found = Some(assemble(&cursor, element, columns)?);
+            }
             "face" if faces.is_none() => faces = list(&mut cursor, element, format)?,
             _ => skip(&mut cursor, element, format)?,
         }

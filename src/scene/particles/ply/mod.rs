@@ -38,13 +38,15 @@ struct Element {
     name: String,
     rows: usize,
     properties: Vec<Property>,
+    /// The byte of the header at which its name begins.
+    at: usize,
 }
 
 /// More properties than any writer makes; a bound on the work that a header can cause.
 const MOST_PROPERTIES: usize = 1024;
 
 pub(super) fn read(bytes: &[u8]) -> Result<Found, ReadError> {
-    let mut cursor = Cursor::new(bytes);
+    let mut cursor = Cursor::of_text(bytes);
     let (format, elements) = header(&mut cursor)?;
     let Some(vertex) = elements.iter().position(|e| e.name == "vertex") else {
         return Err(cursor.text_error("the header has no element `vertex`"));
@@ -53,11 +55,11 @@ pub(super) fn read(bytes: &[u8]) -> Result<Found, ReadError> {
         body::skip(&mut cursor, element, format)?;
     }
     let columns = body::columns(&mut cursor, &elements[vertex], format)?;
-    assemble(&elements[vertex], columns)
+    assemble(&cursor, &elements[vertex], columns)
 }
 
 /// The scalar properties as attributes.
-fn assemble(vertex: &Element, columns: Vec<Values>) -> Result<Found, ReadError> {
+fn assemble(cursor: &Cursor<'_>, vertex: &Element, columns: Vec<Values>) -> Result<Found, ReadError> {
     let mut notes = Vec::new();
     let mut names = Vec::new();
     for property in &vertex.properties {
@@ -80,7 +82,7 @@ fn assemble(vertex: &Element, columns: Vec<Values>) -> Result<Found, ReadError> 
         }
     }
     let Some(position) = position else {
-        return Err(ReadError::new("element `vertex` has no properties `x`, `y` and `z`"));
+        return Err(cursor.text_error_at(vertex.at, "element `vertex` has no properties `x`, `y` and `z`"));
     };
     let mut found = Found::new(position);
     found.attributes = attributes;
@@ -139,10 +141,11 @@ fn format_of(line: &mut Cursor<'_>) -> Result<Format, ReadError> {
 
 fn element(line: &mut Cursor<'_>) -> Result<Element, ReadError> {
     let name = text(line, "an element's name")?;
+    let at = line.offset().saturating_sub(name.len());
     let word = line.word_on_line().unwrap_or_default();
     let message = || format!("expected how many `{name}` there are, found {}", shown(word));
     let rows = count_of(word).ok_or_else(|| line.text_error_before(word, message()))?;
-    Ok(Element { name, rows, properties: Vec::new() })
+    Ok(Element { name, rows, properties: Vec::new(), at })
 }
 
 fn property(line: &mut Cursor<'_>) -> Result<Property, ReadError> {

@@ -72,7 +72,8 @@ fn size_error(array: &DataArray<'_>, expected: usize, found: &str, place: Option
 
 impl<'a> Blocks<'a> {
     pub fn new(bytes: &'a [u8], document: &Document<'_>) -> Result<Self, ReadError> {
-        let packing = document.compressor.as_deref().map(Packing::of).transpose()?;
+        let packing = document.compressor.as_deref().map(Packing::of).transpose();
+        let packing = packing.map_err(|error| error.or_at(|| Place::in_text(bytes, document.at)))?;
         let Document { order, header_size, appended, .. } = *document;
         Ok(Self { bytes, order, header_size, packing, appended, unclaimed: bytes.len() })
     }

@@ -16,6 +16,8 @@ pub(super) struct Document<'a> {
     /// Arrays that belong to the whole file.
     pub fields: Vec<DataArray<'a>>,
     pub appended: Option<Appended>,
+    /// The byte at which the element `VTKFile` begins.
+    pub at: usize,
 }
 
 pub(super) struct Piece<'a> {
@@ -83,6 +85,7 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Document<'_>, ReadError> {
         pieces: Vec::new(),
         fields: Vec::new(),
         appended: None,
+        at: 0,
     };
     let reader = Reader::from_str(head);
     let mut parser = Parser { bytes, head, reader, document, inside: Inside::Nothing, at: 0, whole: false };
@@ -162,6 +165,7 @@ impl<'a> Parser<'a> {
                 error
             });
         }
+        self.document.at = self.at;
         self.document.order = match self.optional(element, "byte_order")?.as_deref() {
             None | Some("LittleEndian") => Order::Little,
             Some("BigEndian") => Order::Big,

@@ -6,6 +6,7 @@ mod blocks;
 mod document;
 
 use super::Attribute;
+use super::cursor::Cursor;
 use super::error::ReadError;
 use super::finish::{Found, names_radius};
 use super::values::{Kind, Values};
@@ -13,10 +14,12 @@ use blocks::Blocks;
 use document::{DataArray, Document, Piece};
 
 pub(super) fn read(bytes: &[u8]) -> Result<Found, ReadError> {
+    // The reader of elements does not count a mark that the text begins with.
+    let bytes = Cursor::of_text(bytes).rest();
     let document = document::parse(bytes)?;
     let mut blocks = Blocks::new(bytes, &document)?;
     let Some((first, others)) = document.pieces.split_first() else {
-        return Err(ReadError::new("expected a `Piece`, found none"));
+        return Err(ReadError::new("expected a `Piece`, found none").at(blocks.place(document.at)));
     };
     let mut found = piece(first, &mut blocks)?;
     for other in others {
