@@ -55,10 +55,31 @@ impl Session {
     /// If the device refuses something or is lost, or a counted buffer cannot get the room that it
     /// needs.
     pub fn draw(&mut self, moment: Moment, present: bool) -> Result<Drawn, Diagnostics> {
+        self.draw_by(present, moment, |session| session.run_from_the_start(moment))
+    }
+
+    /// Draws a moment after the one that was drawn last: steps go on from there.
+    ///
+    /// # Errors
+    /// As [`Session::draw`].
+    pub fn draw_next(&mut self, moment: Moment, present: bool) -> Result<Drawn, Diagnostics> {
+        let mut is_new = true;
+        self.draw_by(present, moment, |session| {
+            let due = session.steps_due(moment.time_s, std::mem::take(&mut is_new), u32::MAX);
+            session.run_moment(moment, &due.steps)
+        })
+    }
+
+    fn draw_by(
+        &mut self,
+        present: bool,
+        moment: Moment,
+        mut run: impl FnMut(&mut Self) -> Result<(), Diagnostics>,
+    ) -> Result<Drawn, Diagnostics> {
         let began = Instant::now();
         let mut notes = Diagnostics::new();
         for repeats in 0..=MOST_REPEATS {
-            self.run_graph(moment)?;
+            run(self)?;
             if present {
                 self.run_present(moment)?;
             }
@@ -79,8 +100,8 @@ impl Session {
         Err(Diagnostic::error(Code::OVERFLOW, endless).into())
     }
 
-    fn run_graph(&mut self, moment: Moment) -> Result<(), Diagnostics> {
-        let (Some(content), Some(runner)) = (&self.content, &mut self.graph) else { return Err(nothing().into()) };
+    fn run_from_the_start(&mut self, moment: Moment) -> Result<(), Diagnostics> {
+        let Some(runner) = &mut self.graph else { return Err(nothing().into()) };
         if !runner.plan().steps.is_empty() {
             runner.reset_state(&self.engine)?;
         }
@@ -88,21 +109,28 @@ impl Session {
         // Steps at a rate only count time; those once a frame need each frame before.
         let first = if is_per_frame { 0 } else { moment.frame };
         for frame in first..=moment.frame {
+            let Some(runner) = &self.graph else { return Err(nothing().into()) };
             let now = if frame == moment.frame { moment } else { Moment::at_frame(frame) };
             let steps = steps_until(runner.plan(), runner.steps_done(), now, first)?;
-            let live = LiveValues::new(content, &content.inputs, &self.pointed, now.time_s);
-            let frame = Frame {
-                time: now.time_s,
-                delta: 1.0 / FRAMES_PER_SECOND,
-                frame: now.frame,
-                steps: &steps,
-                live: &|name, step| live.at(name, step),
-                only: None,
-            };
-            let (inputs, camera, standing) = (&content.inputs, &content.camera, &mut self.standing);
-            Moving { inputs, camera, standing }.run(&self.engine, runner, &frame, Runner::advance)?;
+            self.run_moment(now, &steps)?;
         }
         Ok(())
+    }
+
+    /// Runs the graph for one moment, with so many of each of its `Steps`.
+    fn run_moment(&mut self, now: Moment, steps: &[u32]) -> Result<(), Diagnostics> {
+        let (Some(content), Some(runner)) = (&self.content, &mut self.graph) else { return Err(nothing().into()) };
+        let live = LiveValues::new(content, &content.inputs, &self.pointed, now.time_s);
+        let frame = Frame {
+            time: now.time_s,
+            delta: 1.0 / FRAMES_PER_SECOND,
+            frame: now.frame,
+            steps,
+            live: &|name, step| live.at(name, step),
+            only: None,
+        };
+        let (inputs, camera, standing) = (&content.inputs, &content.camera, &mut self.standing);
+        Moving { inputs, camera, standing }.run(&self.engine, runner, &frame, Runner::advance)
     }
 
     fn run_present(&mut self, moment: Moment) -> Result<(), Diagnostics> {

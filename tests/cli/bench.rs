@@ -136,3 +136,34 @@ fn what_is_no_measurement_is_told() {
         assert!(run.code == 2 && run.stderr.contains(said), "{}: {}", run.code, run.stderr);
     }
 }
+
+/// What is shown is `count` times how many steps ran.
+const STEPPING: &str = r#"Graph(
+    inputs: { "camera": Camera },
+    state: { "count": Buffer(items: 64) },
+    resources: { "picture": Texture(format: Rgba16Float, size: "viewport") },
+    passes: [
+        Steps(rate: 120, passes: [Compute(name: "step", shader: "step.wgsl", each: Item("count"), bind: {"dst": "count"})]),
+        Fullscreen(name: "show", shader: "show.wgsl", color: ["picture"], bind: {"src": "count"}),
+    ],
+    outputs: ["picture"],
+)"#;
+
+#[test]
+fn steps_are_measured_as_they_run() {
+    if !has_adapter() {
+        return;
+    }
+    let project = scenes();
+    project.write("graphs/stepping.ron", STEPPING);
+    let step = FIRST.replace("= f32(i.x)", "+= 1.0");
+    project.write("shaders/step.wgsl", step);
+    project.write("scenes/stepping.ron", r#"Scene(graph: "stepping.ron", size: (16, 8))"#);
+    let (code, json) = json(&project, &["scenes/stepping.ron"]);
+    assert_eq!(code, 0, "{json}");
+    let passes = json["passes"].as_array().unwrap();
+    let step = passes.iter().find(|pass| pass["pass"].as_str().unwrap().starts_with("step")).unwrap();
+    assert_eq!(step["record"]["samples_ms"].as_array().unwrap().len(), 24, "{step}");
+    // The step, the picture, and what shows it.
+    assert_eq!(json["counters"]["passes"], 3, "{}", json["counters"]);
+}

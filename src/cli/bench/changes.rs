@@ -35,14 +35,16 @@ pub(super) struct Unit {
     pub why: Vec<String>,
 }
 
-/// Draws the scene's graph with skipping: unchanged, with another camera, and a frame later.
+/// Draws the scene's graph with skipping after so many frames: unchanged, with another camera, and a frame later.
 ///
 /// # Errors
 /// If the device refuses something.
-pub(super) fn look(session: &mut Session) -> Result<Vec<Change>, Diagnostics> {
+pub(super) fn look(session: &mut Session, drawn: u64) -> Result<Vec<Change>, Diagnostics> {
     let Some(camera) = session.content().map(|content| content.camera) else { return Ok(Vec::new()) };
     session.run_all(false);
-    let still = Live { camera, time_s: 0.0, delta_s: FRAME_S, frame: 0, steps: &[], only: None };
+    let last = drawn.saturating_sub(1);
+    let time_s = last as f64 * FRAME_S;
+    let still = Live { camera, time_s, delta_s: FRAME_S, frame: last, steps: &[], only: None };
     // What the frames before left open, such as what a step touched, runs now.
     for _ in 0..2 {
         session.submit(&still)?;
@@ -50,8 +52,9 @@ pub(super) fn look(session: &mut Session) -> Result<Vec<Change>, Diagnostics> {
     let nothing = session.submit(&still)?;
     let turned = Live { camera: turned(camera), ..still };
     let orbited = session.submit(&turned)?;
-    let due = session.steps_due(FRAME_S, true, MOST_STEPS).steps;
-    let later = session.submit(&Live { time_s: FRAME_S, frame: 1, steps: &due, ..turned })?;
+    let time_s = drawn as f64 * FRAME_S;
+    let due = session.steps_due(time_s, true, MOST_STEPS).steps;
+    let later = session.submit(&Live { time_s, frame: drawn, steps: &due, ..turned })?;
     let of = |(what, report): (&'static str, Report)| session.plan().map(|plan| change(plan, what, &report));
     let all = [("nothing", nothing), ("camera", orbited), ("time", later)];
     Ok(all.into_iter().filter_map(of).collect())

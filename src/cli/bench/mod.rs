@@ -83,7 +83,7 @@ pub(super) struct Counters {
 
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Memory {
-    /// "keep" or "smallest", of the graph.
+    /// "keep", "share" or "smallest", of the graph.
     pub policy: String,
     pub held_bytes: u64,
     pub unshared_bytes: u64,
@@ -132,6 +132,8 @@ struct Subject {
     content: Option<Content>,
     session: Option<Session>,
     index: BTreeMap<String, usize>,
+    /// How many frames were drawn: time goes on, so that steps run as they do in a window.
+    drawn: u64,
     measured: Measured,
 }
 
@@ -142,7 +144,7 @@ impl Subject {
         notes.extend(loaded.diagnostics);
         let scene = args.scene.display().to_string();
         let measured = Measured { scene, size: content.viewport, ..Measured::default() };
-        Ok(Self { content: Some(content), session: None, index: BTreeMap::new(), measured })
+        Ok(Self { content: Some(content), session: None, index: BTreeMap::new(), drawn: 0, measured })
     }
 
     fn build(&mut self, gpu: Gpu, notes: &mut Diagnostics) -> Result<(), Diagnostics> {
@@ -163,13 +165,14 @@ impl Subject {
         Ok(())
     }
 
-    /// Draws a frame twice: once timing its passes, once not, for what the CPU does.
+    /// Draws two frames that follow those before: one timing its passes, one not, for what the CPU does.
     fn frame(&mut self, counts: bool, notes: &mut Diagnostics) -> Result<(), Diagnostics> {
         let Some(session) = &mut self.session else { return Ok(()) };
         session.time_passes(true);
-        let timed = session.draw(Moment::default(), true)?;
+        let timed = session.draw_next(Moment::at_frame(self.drawn), true)?;
         session.time_passes(false);
-        let bare = session.draw(Moment::default(), true)?;
+        let bare = session.draw_next(Moment::at_frame(self.drawn + 1), true)?;
+        self.drawn += 2;
         notes.extend(timed.diagnostics);
         if counts {
             self.measured.add_timed(&timed.reports, &mut self.index);
@@ -193,7 +196,7 @@ impl Subject {
 
     fn try_changes(&mut self) -> Result<(), Diagnostics> {
         if let Some(session) = &mut self.session {
-            self.measured.changes = changes::look(session)?;
+            self.measured.changes = changes::look(session, self.drawn)?;
         }
         Ok(())
     }
