@@ -36,7 +36,6 @@ fn main() -> Result<(), Box<dyn Error>> {
 
     let mut water = Water::new(Gpu::from_parts(Some(adapter), device.clone(), queue.clone()), [320, 240])?;
     let sky = sky(&device, &queue);
-    let id = water.input("environment")?;
     let mut picture = target(&device, [320, 240]);
     for number in 0..3 {
         if number == 2 {
@@ -45,6 +44,8 @@ fn main() -> Result<(), Box<dyn Error>> {
             picture = target(&device, [480, 360]);
         }
         // Version 1 in every frame: it has not changed, so that nothing made from it runs again.
+        // Each plan numbers its objects anew.
+        let id = water.input("environment")?;
         water.runner()?.share_texture_version(id, &sky, 1).map_err(|d| d.message)?;
         let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         clear(&mut encoder, &picture);

@@ -27,6 +27,7 @@ fn main() -> ExitCode {
     harness::run(cases![
         orbiting_allocates_nothing,
         steps_allocate_nothing,
+        frames_for_others_allocate_nothing,
         frames_of_a_window_allocate_nothing,
         panes_of_glass_allocate_nothing,
         expressions_of_live_names_allocate_nothing,
@@ -164,6 +165,27 @@ fn orbiting_allocates_nothing(engine: &mut Engine) {
             nothing_of_ours(&graph, || (WARM..WARM + COUNTED).for_each(frame));
         });
     }
+}
+
+/// Into an embedder's commands, who submits them.
+fn frames_for_others_allocate_nothing(engine: &mut Engine) {
+    let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("graphs/imai2014.ron");
+    let program = program::load(&DiskFiles, &mut Sources::new(), path.to_str().unwrap(), None).program.unwrap();
+    let mut request = check::stand_in(&program);
+    (request.features, request.limits) = (engine.gpu().features(), engine.gpu().limits());
+    request.viewport = [40, 30];
+    let plan = instantiate_stand_in(&program, &request).unwrap();
+    let mut runner = engine.prepare(plan, None).unwrap_or_else(|refused| panic!("{:?}", refused.diagnostics));
+    let mut frame = |nth: usize| {
+        let camera = camera(nth);
+        let live = |name: &str, _: Option<&StepInfo>| value(name, &camera);
+        let now = Frame { time: 0.0, delta: 1.0 / 60.0, frame: nth as u64, steps: &[], live: &live, only: None };
+        let mut theirs = engine.gpu().device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        runner.encode(engine, &now, &mut theirs).unwrap();
+        engine.gpu().queue().submit([theirs.finish()]);
+    };
+    (0..WARM).for_each(&mut frame);
+    nothing_of_ours("encode", || (WARM..WARM + COUNTED).for_each(&mut frame));
 }
 
 fn steps_allocate_nothing(engine: &mut Engine) {

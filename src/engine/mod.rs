@@ -16,6 +16,7 @@ mod compile;
 mod convert;
 mod cuts;
 mod draws;
+mod due;
 mod encode;
 mod errors;
 mod gpu;
@@ -38,6 +39,7 @@ mod upload;
 
 pub use census::Census;
 pub use compile::{Compiled, Compiler};
+pub use due::Due;
 pub use errors::{any_device_gone, is_device_gone};
 pub use gpu::{AdapterSummary, Gpu, GpuOptions, wanted_features};
 pub use materials::{MaterialImage, MaterialSampler, MaterialSlots};

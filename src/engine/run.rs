@@ -78,9 +78,9 @@ impl Runner {
         self.frame_into(engine, frame, None)
     }
 
-    /// The same as [`Runner::run`] into an embedder's commands, who submits them: after everything
-    /// that was encoded before, and before the next frame of this runner is encoded. The report of
-    /// the frame comes by [`Runner::poll`] once they were.
+    /// The same as [`Runner::advance`] into an embedder's commands, who submits them: after everything
+    /// that was encoded before, and before the next frame of this runner is encoded or another plan takes
+    /// its place. The report of the frame comes by [`Runner::poll`] once they were.
     ///
     /// # Errors
     /// As [`Runner::run`]; what the device refuses of the commands is told with the next frame.
@@ -89,9 +89,8 @@ impl Runner {
         engine: &Engine,
         frame: &Frame<'_>,
         encoder: &mut wgpu::CommandEncoder,
-    ) -> Result<Report, Diagnostics> {
-        self.frame_into(engine, frame, Some(encoder))?;
-        Ok(self.report())
+    ) -> Result<(), Diagnostics> {
+        self.frame_into(engine, frame, Some(encoder))
     }
 
     fn frame_into(

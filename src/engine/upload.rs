@@ -14,6 +14,7 @@ impl Runner {
     /// # Errors
     /// If the object is no buffer or has less room.
     pub fn upload_buffer(&mut self, engine: &Engine, object: ObjectId, bytes: &[u8]) -> Result<(), Diagnostic> {
+        self.known(object)?;
         self.own(engine, object)?;
         let buffer = self.pool.buffer(object).ok_or_else(|| self.unfit(object, "is no buffer"))?;
         let room = match &self.plan.objects[object].kind {
@@ -47,6 +48,7 @@ impl Runner {
         layer: u32,
         bytes: &[u8],
     ) -> Result<(), Diagnostic> {
+        self.known(object)?;
         self.own(engine, object)?;
         let texture = self.pool.texture(object).ok_or_else(|| self.unfit(object, "is no texture"))?;
         let (width, height) = ((texture.width() >> mip).max(1), (texture.height() >> mip).max(1));
@@ -56,6 +58,12 @@ impl Runner {
         if bytes.len() != expected || mip >= texture.mip_level_count() {
             let message = format!("takes {expected} bytes for mip {mip}, not {}", bytes.len());
             return Err(self.unfit(object, &message));
+        }
+        let is_3d = texture.dimension() == wgpu::TextureDimension::D3;
+        let layers =
+            if is_3d { (texture.depth_or_array_layers() >> mip).max(1) } else { texture.depth_or_array_layers() };
+        if layer >= layers {
+            return Err(self.unfit(object, &format!("has {layers} layers in mip {mip}, and no layer {layer}")));
         }
         engine.gpu().write_texture(
             wgpu::TexelCopyTextureInfo {
@@ -78,6 +86,7 @@ impl Runner {
     /// # Errors
     /// If one of them is nothing like the other, or the other has no memory yet.
     pub fn share(&mut self, object: ObjectId, from: &Runner, source: ObjectRef) -> Result<(), Diagnostic> {
+        self.known(object)?;
         let id = resolve(&from.plan, &from.rotation, source);
         let Some(memory) = from.pool.memory(id) else {
             return Err(self.unfit(object, &format!("cannot take `{}`, which is empty", from.plan.objects[id].path)));
@@ -132,8 +141,9 @@ impl Runner {
     /// Tells that somebody wrote to an object's memory by other ways than this runner's: what
     /// depends on it runs in the next frame.
     pub fn mark_changed(&mut self, object: ObjectId) {
-        let source = self.sources[object];
-        self.note_content(object, source);
+        if let Some(source) = self.sources.get(object) {
+            self.note_content(object, *source);
+        }
     }
 
     /// Fills all that passes of a frame write with bytes of ones: NaN for floats, the largest for
@@ -188,6 +198,7 @@ impl Runner {
     }
 
     fn share_memory(&mut self, object: ObjectId, memory: Memory, source: Content) -> Result<(), Diagnostic> {
+        self.known(object)?;
         let fits = match (&self.plan.objects[object].kind, &memory) {
             (ObjectKind::Texture(t), Memory::Texture(texture)) => is_like(t, texture),
             (ObjectKind::Buffer(b), Memory::Buffer(buffer)) => buffer.size() >= b.bytes(),
@@ -230,6 +241,16 @@ impl Runner {
             self.forget_variants(object);
         }
         Ok(())
+    }
+
+    /// A number of another plan may be of nothing here.
+    fn known(&self, object: ObjectId) -> Result<(), Diagnostic> {
+        if object < self.plan.objects.len() {
+            return Ok(());
+        }
+        let (graph, count) = (self.plan.graph.display(), self.plan.objects.len());
+        let message = format!("there is no object {object} in the plan of {graph}, which has {count}");
+        Err(Diagnostic::error(Code::BAD_PARAMETER, message).hint("ask `plan.needs(path)` again after each plan"))
     }
 
     fn planned(&self, object: ObjectId) -> String {

@@ -7,7 +7,7 @@ use super::inputs::Input;
 use super::live_values::LiveValues;
 use super::moving::Moving;
 use crate::diagnostic::{Diagnostic, Diagnostics};
-use crate::engine::{Engine, Frame, Report, Runner, Screen, TextureData};
+use crate::engine::{Due, Engine, Frame, Report, Runner, Screen, TextureData};
 use crate::plan::model::{ObjectRef, Plan};
 use crate::scene::Camera;
 
@@ -24,17 +24,6 @@ pub struct Live<'a> {
     pub steps: &'a [u32],
     /// Which passes run, by index into the plan's; absent: all.
     pub only: Option<&'a [bool]>,
-}
-
-/// Steps that a frame is to run.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Due {
-    /// Of each `Steps` of the plan.
-    pub steps: Vec<u32>,
-    /// There were more than may run at once: time has to slow down, or the frame to be repeated.
-    pub is_behind: bool,
-    /// The time lies before steps that are done: state has to start anew.
-    pub needs_reset: bool,
 }
 
 /// What was read of an object.
@@ -160,9 +149,7 @@ impl Session {
     /// The steps to run until a time, `most` of each `Steps` at a time; `is_new` says that a new frame
     /// begins, which those once a frame count.
     pub fn steps_due(&self, time_s: f64, is_new: bool, most: u32) -> Due {
-        self.graph
-            .as_ref()
-            .map_or_else(Due::default, |graph| due(graph.plan(), graph.steps_done(), time_s, is_new, most))
+        self.graph.as_ref().map_or_else(Due::default, |graph| graph.steps_due(time_s, is_new, most))
     }
 
     /// Starts all state anew.
@@ -179,22 +166,6 @@ impl Session {
         let moves = inputs.any(|input| matches!(input, Input::Meshes(meshes) if meshes.info.animated));
         moves || !self.tracks().is_empty() || self.plan().is_some_and(changes_over_time)
     }
-}
-
-fn due(plan: &Plan, done: &[u64], time_s: f64, is_new: bool, most: u32) -> Due {
-    let mut due = Due::default();
-    for (steps, done) in plan.steps.iter().zip(done) {
-        let Some(rate) = steps.rate else {
-            due.steps.push(u32::from(is_new || *done == 0));
-            continue;
-        };
-        let until = (time_s * rate).floor().max(0.0) as u64;
-        due.needs_reset |= until < *done;
-        let open = until.saturating_sub(*done);
-        due.is_behind |= open > u64::from(most);
-        due.steps.push(u32::try_from(open).unwrap_or(u32::MAX).min(most));
-    }
-    due
 }
 
 fn changes_over_time(plan: &Plan) -> bool {

@@ -23,13 +23,14 @@ pub mod sequence;
 mod source;
 mod state;
 
+pub use crate::engine::Due;
 pub use assets::{Cache, Particles};
 pub use build::{Builder, Built, Planned, Session};
 pub use content::Content;
 pub use draw::{Drawn, Moment};
 pub(crate) use frames::numbered_files;
 pub use inputs::Input;
-pub use live::{Due, Live, Read};
+pub use live::{Live, Read};
 pub use load::{Job, Loaded, load};
 pub use sequence::{Player, Track, When, not_in_steps};
 pub(crate) use source::named;

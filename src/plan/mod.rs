@@ -28,6 +28,7 @@ pub mod stats;
 mod units;
 pub mod unstored;
 mod unused;
+mod usages;
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -204,7 +205,7 @@ fn finish(
         warnings.push(diagnostic);
     }
     let names = names(&lowering);
-    let asked = &lowering.request.memory;
+    let (asked, features) = (&lowering.request.memory, lowering.request.features);
     let mut plan = Plan {
         graph: lowering.program.root.path.clone(),
         viewport: lowering.request.viewport,
@@ -230,6 +231,7 @@ fn finish(
         argument_slots,
         warnings,
     };
+    usages::of_the_engine(&mut plan, features);
     // Without shared memory the most draws share a render pass; who runs the plan looks again.
     plan.memory.unstored = unstored::unstored(&plan, &merge::leaders(&plan, &|id| id));
     plan.choose_memory(asked).map_err(|found| *found)?;

@@ -90,8 +90,7 @@ pub fn frames_go_into_their_commands(engine: &mut Engine) {
     for number in 1..=4 {
         let mut theirs = encoder(engine);
         let frame = meniscus::engine::Frame { frame: number, ..frame() };
-        let report = runner.encode(engine, &frame, &mut theirs).unwrap();
-        assert_eq!((report.submissions, report.compute_passes), (0, 1), "they submit");
+        runner.encode(engine, &frame, &mut theirs).unwrap();
         // Their own commands behind ours see what ours did.
         let copy = engine.gpu().device().create_buffer(&wgpu::BufferDescriptor {
             label: None,
@@ -106,6 +105,7 @@ pub fn frames_go_into_their_commands(engine: &mut Engine) {
     let report = runner.poll(engine).expect("the answer came with their submission");
     assert!(report.complete && report.frame == 4 || report.frame == 3, "{report:?}");
     assert!(report.passes[0].gpu_ms.is_some());
+    assert_eq!((report.submissions, report.compute_passes), (0, 1), "they submit");
     assert_eq!(words(engine, &runner, out), [4]);
 }
 
@@ -134,6 +134,26 @@ pub fn a_texture_of_theirs_is_checked(engine: &mut Engine) {
     runner.share_texture_version(picture, &filled(engine, 3.0), 1).unwrap();
     run(engine, &mut runner);
     assert_eq!(words(engine, &runner, out), [3]);
+}
+
+pub fn what_is_not_in_the_plan_is_told(engine: &mut Engine) {
+    let (plan, picture, out) = reading();
+    let mut runner = prepare(engine, plan);
+    let theirs = filled(engine, 3.0);
+    let refused = [
+        runner.share_texture(99, &theirs).unwrap_err(),
+        runner.upload_buffer(engine, 99, &[0; 4]).unwrap_err(),
+        runner.upload_texture(engine, 99, 0, 0, &[0; 64]).unwrap_err(),
+    ];
+    for refused in refused {
+        assert!(refused.message.contains("no object 99") && refused.hints[0].contains("needs"), "{refused:?}");
+    }
+    runner.mark_changed(99);
+    let layer = runner.upload_texture(engine, picture, 0, 1, &[0; 64]).unwrap_err();
+    assert!(layer.message.contains("no layer 1"), "{layer:?}");
+    runner.upload_texture(engine, picture, 0, 0, &[0; 64]).unwrap();
+    run(engine, &mut runner);
+    assert_eq!(words(engine, &runner, out), [0]);
 }
 
 /// Dropped, a texture lives on while it is in use; destroyed, it is told, and what was drawn last

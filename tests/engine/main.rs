@@ -73,6 +73,7 @@ fn main() -> ExitCode {
         embed::frames_go_into_their_commands,
         embed::dropped_commands_leave_no_trace,
         embed::a_texture_of_theirs_is_checked,
+        embed::what_is_not_in_the_plan_is_told,
         embed::a_texture_that_they_destroy_is_told,
         embed::two_graphs_do_not_write_one_texture,
         embed::instances_share_pipelines_and_inputs,

@@ -2,7 +2,11 @@
 
 use std::collections::BTreeSet;
 
-use meniscus::plan::model::{Argument, ArgumentKind, Dispatch, Geometry, PassKind, Plan};
+use meniscus::format::TextureFormat;
+use meniscus::plan::model::{
+    Argument, ArgumentKind, Dispatch, Geometry, InputInfo, ObjectKind, PassKind, Plan, Texture,
+};
+use wgpu_types::TextureUsages;
 
 use crate::planning::{Test, pass, paths};
 
@@ -201,4 +205,42 @@ fn mips_are_made_anew_in_each_step_that_changed_them_and_behind_the_steps() {
     assert_eq!(paths(&plan), expected);
     assert_eq!(plan.steps[0].passes, 4..7);
     assert_eq!((plan.passes[2].steps, plan.passes[4].steps, plan.passes[7].steps), (None, Some(0), None));
+}
+
+#[test]
+fn what_is_handed_in_is_made_for_what_the_engine_does_with_it() {
+    let graph = r#"Graph(
+        inputs: { "cleared": Buffer, "filled": Buffer, "copied": Texture, "drawn": Texture, "read": Buffer },
+        resources: { "out": Buffer(items: 64), "other": Texture(format: Rgba8Unorm, size: (8, 8)) },
+        passes: [
+            Clear(of: "cleared"), Clear(of: "filled", value: 3), Clear(of: "drawn", value: 0.5),
+            Copy(from: "copied", to: "other"),
+            Compute(name: "use", shader: "copy.wgsl", each: Item("out"), bind: {"src": "read", "dst": "out"}),
+        ],
+        outputs: ["out", "cleared", "filled", "drawn", "other"],
+    )"#;
+    let buffer = InputInfo::Buffer { items: 64, stride: 4 };
+    let texture = InputInfo::Texture(Texture {
+        format: TextureFormat::Rgba8Unorm,
+        width: 8,
+        height: 8,
+        layers: 1,
+        is_3d: false,
+        mips: 1,
+        samples: 1,
+        usages: TextureUsages::empty(),
+    });
+    let test =
+        ["cleared", "filled", "read"].iter().fold(Test::new(graph), |test, name| test.input(name, buffer.clone()));
+    let test = test.input("copied", texture.clone()).input("drawn", texture);
+    let plan = ["cleared", "filled", "drawn", "other"].iter().fold(test, |test, name| test.root(name)).plan();
+    let usages = |name: &str| match plan.needs(name).unwrap().1 {
+        ObjectKind::Buffer(buffer) => format!("{:?}", buffer.usages),
+        ObjectKind::Texture(texture) => format!("{:?}", texture.usages),
+    };
+    assert_eq!(usages("cleared"), "BufferUsages(COPY_DST)");
+    assert_eq!(usages("filled"), "BufferUsages(STORAGE)");
+    assert_eq!(usages("read"), "BufferUsages(STORAGE)");
+    assert_eq!(usages("copied"), "TextureUsages(COPY_SRC)");
+    assert_eq!(usages("drawn"), "TextureUsages(RENDER_ATTACHMENT)");
 }
