@@ -14,7 +14,7 @@ struct Claim {
     object: String,
 }
 
-/// What the runners of one engine write to that is not theirs.
+/// What the runners of a device write to that is not theirs.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Claims(Arc<Mutex<Vec<Claim>>>);
 
@@ -43,12 +43,35 @@ impl Claimant {
         if let Some(other) = claims.iter().find(|claim| claim.memory == *memory) {
             return Err((other.graph.clone(), other.object.clone()));
         }
-        claims.push(Claim {
+        claims.push(self.claimed(memory, graph, object));
+        Ok(())
+    }
+
+    /// Notes that these objects are written, and no others.
+    ///
+    /// # Errors
+    /// With the object of which the memory is written already, and the graph and the object that do; nothing has
+    /// changed then.
+    pub fn claim_only(&self, written: &[(&str, &Memory)], graph: &str) -> Result<(), [String; 3]> {
+        let mut claims = self.claims.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let is_mine = |claim: &Claim| Weak::as_ptr(&claim.owner) == Arc::as_ptr(&self.me);
+        for (object, memory) in written {
+            let others = claims.iter().filter(|claim| claim.owner.strong_count() > 0 && !is_mine(claim));
+            if let Some(other) = others.into_iter().find(|claim| claim.memory == **memory) {
+                return Err([(*object).to_owned(), other.graph.clone(), other.object.clone()]);
+            }
+        }
+        claims.retain(|claim| claim.owner.strong_count() > 0 && !is_mine(claim));
+        claims.extend(written.iter().map(|(object, memory)| self.claimed(memory, graph, object)));
+        Ok(())
+    }
+
+    fn claimed(&self, memory: &Memory, graph: &str, object: &str) -> Claim {
+        Claim {
             memory: memory.clone(),
             owner: Arc::downgrade(&self.me),
             graph: graph.to_owned(),
             object: object.to_owned(),
-        });
-        Ok(())
+        }
     }
 }

@@ -8,6 +8,7 @@ use std::time::Duration;
 
 use wgpu_types::{AdapterInfo, Features, Limits, PowerPreference};
 
+use super::claims::Claims;
 use super::errors::{self, Faults};
 use crate::diagnostic::{Code, Diagnostic};
 
@@ -42,6 +43,7 @@ pub struct Gpu {
     queue: wgpu::Queue,
     faults: Arc<Mutex<Faults>>,
     uploaded: Arc<AtomicU64>,
+    claims: Claims,
 }
 
 /// What plans may make use of, where an adapter has it.
@@ -138,7 +140,7 @@ impl Gpu {
     }
 
     /// Takes over a device that an embedder opened. Its callbacks for errors and for loss are
-    /// replaced by the engine's.
+    /// replaced by the engine's: once for each device, and clones for all engines on it.
     pub fn from_parts(adapter: Option<wgpu::Adapter>, device: wgpu::Device, queue: wgpu::Queue) -> Self {
         let faults = Arc::new(Mutex::new(Faults::default()));
         let uncaptured = Arc::clone(&faults);
@@ -150,7 +152,7 @@ impl Gpu {
             // A device that is dropped or destroyed on purpose is nobody's fault, but nothing runs on it either.
             lost.lock().unwrap_or_else(PoisonError::into_inner).lost(format!("{reason:?}: {message}"));
         });
-        Self { instance: None, adapter, device, queue, faults, uploaded: Arc::default() }
+        Self { instance: None, adapter, device, queue, faults, uploaded: Arc::default(), claims: Claims::default() }
     }
 
     /// Every adapter of the machine, those of GL only if it is named.
@@ -172,6 +174,10 @@ impl Gpu {
 
     pub fn adapter(&self) -> Option<&wgpu::Adapter> {
         self.adapter.as_ref()
+    }
+
+    pub(super) fn claims(&self) -> &Claims {
+        &self.claims
     }
 
     pub fn device(&self) -> &wgpu::Device {

@@ -310,6 +310,12 @@ impl Pool {
         news
     }
 
+    /// Somebody else's memory that an object has.
+    pub fn foreign(&self, object: ObjectId) -> Option<&Memory> {
+        let slot = &self.slots[self.of[object].0];
+        slot.memory.as_ref().filter(|_| slot.foreign)
+    }
+
     /// Makes sure that an object's memory is not somebody else's before it is written.
     pub fn own(&mut self, object: ObjectId) {
         if self.slots[self.of[object].0].foreign {

@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use super::bind::{Fixed, references};
 use super::carry::{self, Carried, Content};
-use super::claims::{Claimant, Claims};
+use super::claims::Claimant;
 use super::clear;
 use super::compile::Compiler;
 use super::convert;
@@ -34,7 +34,6 @@ use crate::plan::model::{Draw, ObjectRef, Origin, Pass, PassKind, Plan, ShaderUs
 pub struct Engine {
     gpu: Gpu,
     compiler: Compiler,
-    claims: Claims,
 }
 
 /// A plan made ready to run, with its memory.
@@ -101,7 +100,7 @@ pub struct Refused {
 
 impl Engine {
     pub fn new(gpu: Gpu) -> Self {
-        Self { compiler: Compiler::new(&gpu), gpu, claims: Claims::default() }
+        Self { compiler: Compiler::new(&gpu), gpu }
     }
 
     pub fn gpu(&self) -> &Gpu {
@@ -158,7 +157,7 @@ impl Engine {
             settles: settles(&plan),
             rings_of: plan.passes.iter().map(rings_of).collect(),
             timing: Timing::new(&self.gpu, &plan),
-            claimant: previous.map_or_else(|| Claimant::new(&self.claims), |p| p.claimant.clone()),
+            claimant: previous.map_or_else(|| Claimant::new(self.gpu.claims()), |p| p.claimant.clone()),
             leaders,
             rotation,
             done,
@@ -182,6 +181,7 @@ impl Engine {
         };
         runner.bind_all(&self.gpu)?;
         self.gpu.check()?;
+        runner.claim_what_is_written()?;
         // Last, when nothing refuses the plan any more: it writes to memory that the runner before has too.
         if let Some(before) = previous {
             runner.take_answers(&self.gpu, before)?;

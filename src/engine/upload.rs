@@ -91,6 +91,11 @@ impl Runner {
         let Some(memory) = from.pool.memory(id) else {
             return Err(self.unfit(object, &format!("cannot take `{}`, which is empty", from.plan.objects[id].path)));
         };
+        let writes = |runner: &Runner, object: ObjectId| runner.writers.iter().any(|(written, _)| *written == object);
+        if writes(self, object) && writes(from, id) {
+            let graph = from.plan.graph.display().to_string();
+            return Err(self.written_already(object, &graph, &from.plan.objects[id].path));
+        }
         self.share_memory(object, memory.clone(), Content::Version(from.stamps[id]))
     }
 
@@ -222,16 +227,32 @@ impl Runner {
         Ok(())
     }
 
+    /// Of what was taken over from the plan before, another part may be written now.
+    pub(super) fn claim_what_is_written(&self) -> Result<(), Diagnostic> {
+        let foreign = self.writers.iter().filter_map(|(object, _)| {
+            let memory = self.pool.foreign(*object)?;
+            Some((self.plan.objects[*object].path.as_str(), memory))
+        });
+        let written: Vec<_> = foreign.collect();
+        self.claimant.claim_only(&written, &self.plan.graph.display().to_string()).map_err(|[path, other, theirs]| {
+            let object = self.plan.objects.iter().position(|object| object.path == path).unwrap_or_default();
+            self.written_already(object, &other, &theirs)
+        })
+    }
+
+    fn written_already(&self, object: ObjectId, other: &str, theirs: &str) -> Diagnostic {
+        self.unfit(object, &format!("cannot be written where `{theirs}` of {other} is written already"))
+            .hint("give each of them a texture or buffer of its own, or let one read what the other writes")
+    }
+
     /// What two graphs write would depend on which of them ran last.
     fn claim(&self, object: ObjectId, memory: &Memory) -> Result<(), Diagnostic> {
         if !self.writers.iter().any(|(written, _)| *written == object) {
             return Ok(());
         }
         let (graph, path) = (self.plan.graph.display().to_string(), &self.plan.objects[object].path);
-        self.claimant.claim(memory, &graph, path).map_err(|(other, written)| {
-            self.unfit(object, &format!("cannot be written where `{written}` of {other} is written already"))
-                .hint("give each of them a texture or buffer of its own, or let one read what the other writes")
-        })
+        let claimed = self.claimant.claim(memory, &graph, path);
+        claimed.map_err(|(other, theirs)| self.written_already(object, &other, &theirs))
     }
 
     /// Gives an object memory of its own to write to.

@@ -205,6 +205,29 @@ pub fn two_graphs_do_not_write_one_texture(engine: &mut Engine) {
     three.share_texture(picture, &shared).expect("nobody has it any more");
 }
 
+pub fn another_engine_knows_what_is_written(engine: &mut Engine) {
+    let (plan, picture) = writing();
+    let usages = TextureUsages::RENDER_ATTACHMENT | TextureUsages::TEXTURE_BINDING;
+    let shared = texture(engine, usages);
+    let mut other = Engine::new(engine.gpu().clone());
+    let (mut one, mut two) = (prepare(engine, plan.clone()), prepare(&mut other, plan.clone()));
+    one.share_texture(picture, &shared).unwrap();
+    assert!(two.share_texture(picture, &shared).is_err(), "the device is the same");
+    // Neither what the other made for itself.
+    let own = prepare(engine, writing().0);
+    let refused = two.share(picture, &own, ObjectRef::Fixed(picture));
+    assert!(refused.is_err(), "both write");
+    // A plan that only reads what the one before it wrote lets go of it.
+    let mut reads = plan.clone();
+    reads.passes.clear();
+    let one = engine.prepare(reads, Some(one)).unwrap();
+    two.share_texture(picture, &shared).expect("nobody writes it any more");
+    // And one that writes again is refused, with the runner before intact.
+    let refused = engine.prepare(plan, Some(one)).unwrap_err();
+    assert!(refused.diagnostics.iter().any(|d| d.message.contains("written already")), "{:?}", refused.diagnostics);
+    assert!(refused.previous.is_some());
+}
+
 /// Instances of a graph on one device: pipelines are made once, and an input is in memory once.
 pub fn instances_share_pipelines_and_inputs(engine: &mut Engine) {
     let (plan, picture, out) = reading();

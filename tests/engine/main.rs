@@ -76,6 +76,7 @@ fn main() -> ExitCode {
         embed::what_is_not_in_the_plan_is_told,
         embed::a_texture_that_they_destroy_is_told,
         embed::two_graphs_do_not_write_one_texture,
+        embed::another_engine_knows_what_is_written,
         embed::instances_share_pipelines_and_inputs,
         embed::the_smallest_and_the_largest_sizes_work,
         bad_input::a_parameter_changed_a_thousand_times_in_a_frame,
