@@ -10,14 +10,10 @@ use std::error::Error;
 use std::f64::consts::TAU;
 
 use glam::DVec3;
-use meniscus::diagnostic::{Diagnostics, Sources, Style, render_all};
-use meniscus::engine::{Engine, Frame, Gpu, Report, Runner};
-use meniscus::files::DiskFiles;
-use meniscus::plan::instantiate;
-use meniscus::plan::model::{InputInfo, ObjectId, Plan, Request, Texture};
-use meniscus::program::{self, Program};
-use meniscus::scene::{Camera, Light};
-use wgpu::TextureFormat;
+use meniscus::embed::{
+    Camera, Diagnostics, DiskFiles, Engine, Frame, Gpu, InputInfo, Light, ObjectId, Plan, Program, Report, Request,
+    Runner, Sources, Style, Texture, TextureFormat, instantiate, load, render_all, wanted_features,
+};
 
 /// Metres.
 const RADIUS: f32 = 0.04;
@@ -28,7 +24,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let instance = wgpu::Instance::default();
     let adapter = pollster::block_on(instance.request_adapter(&wgpu::RequestAdapterOptions::default()))?;
     let descriptor = wgpu::DeviceDescriptor {
-        required_features: adapter.features() & meniscus::engine::wanted_features(),
+        required_features: adapter.features() & wanted_features(),
         required_limits: adapter.limits(),
         ..wgpu::DeviceDescriptor::default()
     };
@@ -81,7 +77,7 @@ impl Water {
     fn new(gpu: Gpu, size: [u32; 2]) -> Result<Self, Box<dyn Error>> {
         // Graphs come from the disk, from memory, or from what the library carries, as this one.
         let mut sources = Sources::new();
-        let loaded = program::load(&DiskFiles, &mut sources, "imai2014.ron", None);
+        let loaded = load(&DiskFiles, &mut sources, "imai2014.ron", None);
         let program = loaded.program.ok_or_else(|| render_all(&loaded.diagnostics, &sources, Style::Plain))?;
         let particles = ball();
         let mut engine = Engine::new(gpu);

@@ -4,10 +4,14 @@
 //! Data flows one way: files → graph (with spans) → check against reflected shaders → plan →
 //! engine → picture. Each step is a function from one value to the next, and everything up to
 //! and including the plan works without a GPU.
+//!
+//! Whoever draws with graphs in a program of their own finds all that they need in [`embed`]. The other modules are what the
+//! command line, the window and the tests are made of.
 
 pub mod check;
 pub mod cli;
 pub mod diagnostic;
+pub mod embed;
 pub mod engine;
 pub mod files;
 pub mod format;
