@@ -16,10 +16,11 @@ use crate::plan::meshes::{Faces, MaterialTexture, MeshDraw, MeshesInfo, VertexAt
 use crate::plan::packing;
 use crate::scene::MeshEntry;
 use crate::scene::image::Stored;
-use crate::scene::meshes::{AlphaMode, Material, Model, Primitive, is_mirrored};
+use crate::scene::meshes::{AlphaMode, Bounds, FARTHEST_M, Material, Model, Pose, Primitive, is_mirrored};
 use crate::shader::reflect::Type;
 use materials::slots;
 pub(super) use poses::Standing;
+pub(super) use poses::choice;
 use poses::{Entry, animation};
 
 /// Bodies ready to be handed to a device.
@@ -101,8 +102,12 @@ impl Meshes {
         if !found.is_empty() {
             return Err(found);
         }
+        let (bounds, far) = meshes.extent();
+        if let Some(far) = far {
+            return Err(too_far(parts, far).into());
+        }
         meshes.sort_draws();
-        meshes.fill_info(parts);
+        meshes.fill_info(parts, bounds);
         Ok(meshes)
     }
 
@@ -141,6 +146,7 @@ impl Meshes {
         let first_body = self.bodies.len() as u32;
         self.bodies.extend(about.world_from_body.iter().map(DMat4::as_mat4));
         let pose = self.entries[entry].pose(0.0);
+        let turning = model.turning(self.entries[entry].animation);
         for (node, body_from_node) in pose.iter().enumerate() {
             let Some((mesh, ranges)) =
                 model.nodes[node].mesh.and_then(|m| Some((model.meshes.get(m)?, placed.indices.get(m)?)))
@@ -151,7 +157,8 @@ impl Meshes {
                 let material = placed.first_material + primitive.material as u32;
                 let (first_index, indices) = (range.start, range.end - range.start);
                 let of = &self.materials[material as usize];
-                let (double_sided, blended) = (of.double_sided, of.alpha_mode == AlphaMode::Blend);
+                // What turns inside out on its way has no side that is its front all the time.
+                let (double_sided, blended) = (of.double_sided || turning[node], of.alpha_mode == AlphaMode::Blend);
                 // Mirrored and other bodies have calls of their own, since their fronts differ.
                 for mirrored in [false, true] {
                     let first_instance = self.instances.len() as u32;
@@ -193,12 +200,11 @@ impl Meshes {
         self.blended.len() > 1
     }
 
-    fn fill_info(&mut self, parts: &[(&MeshEntry, Arc<Model>)]) {
-        let (min, max) = self.bounds();
+    fn fill_info(&mut self, parts: &[(&MeshEntry, Arc<Model>)], Bounds { min, max }: Bounds) {
         let blended = self.info.draws.iter().filter(|draw| draw.blended).map(|draw| draw.first_instance);
         let middle = |at: u32| {
-            let (low, high) = self.vertices.bounds(&self.instances[at as usize]);
-            (at, (low + high) * 0.5)
+            let of = self.vertices.bounds(&self.instances[at as usize]);
+            (at, of.map_or(Vec3::ZERO, |of| (of.min + of.max) * 0.5))
         };
         self.blended = blended.map(middle).collect();
         self.info = MeshesInfo {
@@ -215,24 +221,31 @@ impl Meshes {
         };
     }
 
-    /// The box around all bodies wherever they come in their animations.
-    fn bounds(&self) -> (Vec3, Vec3) {
-        let poses: Vec<Vec<Vec<Mat4>>> = self.entries.iter().map(Entry::poses).collect();
-        let mut boxes: BTreeMap<u32, (Vec3, Vec3)> = BTreeMap::new();
-        let (mut min, mut max) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
+    /// The box around all bodies wherever they come in their animations, and the first instance
+    /// that comes too far for anything to be reckoned with it.
+    fn extent(&self) -> (Bounds, Option<Instance>) {
+        let mut boxes: BTreeMap<u32, Option<Bounds>> = BTreeMap::new();
         for instance in &self.instances {
-            let (low, high) = *boxes.entry(instance.first_triangle).or_insert_with(|| self.vertices.bounds(instance));
-            for pose in &poses[instance.entry] {
-                let world = self.bodies[instance.body as usize] * pose[instance.node];
-                for corner in 0..8 {
-                    let part =
-                        Vec3::from_array([0, 1, 2].map(|axis| if corner >> axis & 1 == 0 { low } else { high }[axis]));
-                    let at = world.transform_point3(part);
-                    (min, max) = (min.min(at), max.max(at));
+            boxes.entry(instance.first_triangle).or_insert_with(|| self.vertices.bounds(instance));
+        }
+        let (mut all, mut far) = (None, None);
+        let mut pose = Pose::default();
+        for instances in self.instances.chunk_by(|a, b| a.entry == b.entry) {
+            let entry = &self.entries[instances[0].entry];
+            for time_s in entry.times_s() {
+                entry.model.pose_into(entry.animation, time_s, &mut pose);
+                for instance in instances {
+                    let Some(own) = boxes.get(&instance.first_triangle).copied().flatten() else { continue };
+                    let world = self.bodies[instance.body as usize] * pose.world[instance.node];
+                    if far.is_none() && !own.stays_within(FARTHEST_M, world) {
+                        far = Some(*instance);
+                    }
+                    let here = own.moved(world);
+                    all = Some(all.map_or(here, |all: Bounds| all.with(here)));
                 }
             }
         }
-        if min.x <= max.x { (min, max) } else { (Vec3::ZERO, Vec3::ZERO) }
+        (all.unwrap_or(Bounds { min: Vec3::ZERO, max: Vec3::ZERO }), far)
     }
 
     pub(super) fn vertices(&self, attribute: VertexAttribute) -> &[u8] {
@@ -290,13 +303,24 @@ impl Vertices {
         start..self.indices.len() as u32
     }
 
-    /// The box around a primitive in the space of its node.
-    fn bounds(&self, instance: &Instance) -> (Vec3, Vec3) {
+    /// The box around a primitive in the space of its node; none without triangles.
+    fn bounds(&self, instance: &Instance) -> Option<Bounds> {
         let first = instance.first_triangle as usize * 3;
         let indices = self.indices.get(first..first + instance.triangles as usize * 3).unwrap_or_default();
         let points = indices.iter().filter_map(|i| self.positions.get(*i as usize)).map(|p| Vec3::from_array(*p));
-        points.fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)))
+        points.map(|p| Bounds { min: p, max: p }).reduce(Bounds::with)
     }
+}
+
+fn too_far(parts: &[(&MeshEntry, Arc<Model>)], far: Instance) -> Diagnostic {
+    let Some((entry, model)) = parts.get(far.entry) else {
+        return Diagnostic::error(Code::ASSET, "a body is too far away");
+    };
+    let name = model.nodes.get(far.node).map_or("", |node| &node.name);
+    let node = if name.is_empty() { String::new() } else { format!(": node `{name}`") };
+    let why = "where the scene or an animation puts it, it reaches beyond";
+    let message = format!("`{}`{node}: {why} {FARTHEST_M:e} m, with which nothing can be reckoned", entry.file.value);
+    Diagnostic::error(Code::ASSET, message).at(entry.file.span, "named here")
 }
 
 /// Values by name: for each body what the scene gives.

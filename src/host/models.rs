@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::thread::{self, JoinHandle};
 
-use super::meshes::Meshes;
+use super::meshes::{Meshes, choice};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics, Span};
 use crate::scene::meshes::{Bundle, Model, read};
 use crate::scene::{Item, MeshEntry};
@@ -104,6 +104,14 @@ impl Models {
         models: Vec<Arc<Model>>,
         diagnostics: &mut Diagnostics,
     ) -> Option<Arc<Meshes>> {
+        let mut said: Vec<&str> = Vec::new();
+        for (entry, model) in entries.iter().zip(&models) {
+            // Several bodies of one file are one matter.
+            if !said.contains(&entry.file.value.as_str()) {
+                choice(entry, model).into_iter().for_each(|note| diagnostics.push(note));
+                said.push(&entry.file.value);
+            }
+        }
         if let Some(known) = self.joined.get(name)
             && alike(&known.entries, &entries)
             && known.models.len() == models.len()

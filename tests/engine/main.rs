@@ -88,6 +88,7 @@ fn main() -> ExitCode {
         meshes::absent_meshes_are_no_bodies,
         meshes::materials_are_bound_by_name,
         meshes::animations_move_nodes,
+        meshes::what_turns_inside_out_on_its_way_stays_seen,
         meshes::what_blends_goes_from_back_to_front,
         meshes::steps_see_meshes_move,
         meshes::bounds_cover_animations,

@@ -16,12 +16,14 @@ fn square(more: &str, node: &str, rest: &str) -> String {
     let indices: [u16; 6] = [0, 1, 2, 0, 2, 3];
     let times: [f32; 2] = [0.0, 1.0];
     let moves: [[f32; 3]; 2] = [[0.0; 3], [2.0, 0.0, 0.0]];
+    let scales: [[f32; 3]; 2] = [[1.0; 3], [-1.0, 1.0, 1.0]];
     let mut bytes: Vec<u8> = Vec::new();
     bytes.extend(corners.as_flattened().iter().flat_map(|x| x.to_le_bytes()));
     bytes.extend(uvs.as_flattened().iter().flat_map(|x| x.to_le_bytes()));
     bytes.extend(indices.iter().flat_map(|x| x.to_le_bytes()));
     bytes.extend(times.iter().flat_map(|x| x.to_le_bytes()));
     bytes.extend(moves.as_flattened().iter().flat_map(|x| x.to_le_bytes()));
+    bytes.extend(scales.as_flattened().iter().flat_map(|x| x.to_le_bytes()));
     let data = base64::prelude::BASE64_STANDARD.encode(&bytes);
     format!(
         r#"{{ "asset": {{ "version": "2.0" }}, "scene": 0, "scenes": [{{ "nodes": [0] }}],
@@ -32,13 +34,14 @@ fn square(more: &str, node: &str, rest: &str) -> String {
         "bufferViews": [
             {{ "buffer": 0, "byteOffset": 0, "byteLength": 48 }}, {{ "buffer": 0, "byteOffset": 48, "byteLength": 32 }},
             {{ "buffer": 0, "byteOffset": 80, "byteLength": 12 }}, {{ "buffer": 0, "byteOffset": 92, "byteLength": 8 }},
-            {{ "buffer": 0, "byteOffset": 100, "byteLength": 24 }}],
+            {{ "buffer": 0, "byteOffset": 100, "byteLength": 24 }}, {{ "buffer": 0, "byteOffset": 124, "byteLength": 24 }}],
         "accessors": [
             {{ "bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3", "min": [-0.5, -0.5, 0], "max": [0.5, 0.5, 0] }},
             {{ "bufferView": 1, "componentType": 5126, "count": 4, "type": "VEC2" }},
             {{ "bufferView": 2, "componentType": 5123, "count": 6, "type": "SCALAR" }},
             {{ "bufferView": 3, "componentType": 5126, "count": 2, "type": "SCALAR", "min": [0], "max": [1] }},
-            {{ "bufferView": 4, "componentType": 5126, "count": 2, "type": "VEC3" }}]
+            {{ "bufferView": 4, "componentType": 5126, "count": 2, "type": "VEC3" }},
+            {{ "bufferView": 5, "componentType": 5126, "count": 2, "type": "VEC3" }}]
         {rest} }}"#,
         bytes.len()
     )
@@ -236,6 +239,21 @@ pub fn animations_move_nodes(_: &mut Engine) {
     assert_eq!(at("loop: false", 1.5), [false, false, true], "it stays where it ended");
     assert_eq!(at("start: 0.5", 0.0), [false, true, false]);
     assert_eq!(at("animation: None", 0.5), [true, false, false]);
+}
+
+/// An animation that takes the scale along x from 1 to -1: no side is the front all the time.
+pub fn what_turns_inside_out_on_its_way_stays_seen(_: &mut Engine) {
+    let rest = r#", "animations": [{ "samplers": [{ "input": 3, "output": 5 }],
+        "channels": [{ "sampler": 0, "target": { "node": 0, "path": "scale" } }] }]"#;
+    let turning =
+        square(r#""pbrMetallicRoughness": { "baseColorFactor": [1, 0, 0, 1] }"#, r#", "scale": [1, 1, 1]"#, rest);
+    let at = |how: &str, time_s: f64| {
+        let files = files(graph("", DRAW), scene(&format!(r#"(file: "turning.gltf", loop: false, {how})"#)));
+        seen(&files.with("turning.gltf", turning.clone()), Moment::at_time(time_s), &[[0.0, 0.0]])[0]
+    };
+    assert_eq!([at("", 0.0), at("", 1.0), at("scale: (-1, 1, 1)", 1.0)], [RED; 3]);
+    // One that stands still has a back that is not seen.
+    assert_eq!(at("animation: None, rotation: (0, 180, 0)", 1.0), NOTHING);
 }
 
 /// Two half-transparent squares, one before the other, also as bodies of one file and where time moves one of them.
@@ -458,7 +476,16 @@ pub fn what_does_not_fit_is_told(_: &mut Engine) {
     let said = |graph: String, bodies: &str| {
         let (mut sources, mut cache) = (Sources::new(), Cache::default());
         let job = Job { source: PathBuf::from("scene.ron"), ..Job::default() };
-        let loaded = load(&files(graph, scene(bodies)), &mut sources, &job, &mut cache);
+        let go = |name: &str, output: u32, path: &str| {
+            format!(
+                r#"{{ "name": "{name}", "samplers": [{{ "input": 3, "output": {output} }}],
+                "channels": [{{ "sampler": 0, "target": {{ "node": 0, "path": "{path}" }} }}] }}"#
+            )
+        };
+        let animations = [go("go", 4, "translation"), go("turn", 5, "scale")].join(", ");
+        let many = square("", r#", "name": "sail""#, &format!(r#", "animations": [{animations}]"#));
+        let files = files(graph, scene(bodies)).with("many.gltf", many);
+        let loaded = load(&files, &mut sources, &job, &mut cache);
         let mut all = loaded.diagnostics;
         if let Some(content) = loaded.content {
             let mut session = Session::new(Gpu::open(&GpuOptions::default()).unwrap());
@@ -471,6 +498,14 @@ pub fn what_does_not_fit_is_told(_: &mut Engine) {
         graph(r#""lift": Float(max: 2.0)"#, &format!(r#"Compute(shader: "raise.wgsl", each: Item("meshes")), {DRAW}"#));
     for (graph, bodies, words) in [
         (plain(), r#"(file: "red.gltf", animation: "go")"#, "`red.gltf` has no animation `go`"),
+        (plain(), r#"(file: "many.gltf")"#, "`many.gltf`: of its 2 animations the first is played, `go`"),
+        (plain(), r#"(file: "many.gltf")"#, "`animation:` of a body chooses; there are also `turn`"),
+        (plain(), r#"(file: "red.gltf", position: (0, 0, 1e19))"#, "it reaches beyond 1e18 m"),
+        (
+            plain(),
+            r#"(file: "many.gltf", scale: 1e18)"#,
+            "`many.gltf`: node `sail`: where the scene or an animation puts it",
+        ),
         (plain(), r#"(file: "gone.gltf")"#, "there is no file `gone.gltf`"),
         (plain(), r#"(file: "mesh.wgsl")"#, "its extension is not that of a mesh file"),
         (plain(), r#"(file: "red.gltf", scale: (1, 0, 1))"#, "a scale of 0 leaves nothing of a body"),

@@ -271,7 +271,7 @@ fn materials_have_all_that_they_say() {
         },
     });
     textured(&mut builder, material);
-    let model = whole(&builder.files().with("a.png", png(&[[0; 4]])), "a.gltf");
+    let model = read(&builder.files().with("a.png", png(&[[0; 4]])), "a.gltf").unwrap();
     let found = &model.materials[0];
     assert_eq!(found.base_color_factor, [0.1, 0.2, 0.3, 0.4]);
     assert_eq!((found.metallic_factor, found.roughness_factor), (0.5, 0.6));
@@ -296,7 +296,7 @@ fn materials_have_all_that_they_say() {
     assert_eq!(model.images.len(), 1, "one image is decoded once");
     for (word, mode) in [("OPAQUE", AlphaMode::Opaque), ("BLEND", AlphaMode::Blend)] {
         builder.document["materials"][0]["alphaMode"] = json!(word);
-        let model = whole(&builder.files().with("a.png", png(&[[0; 4]])), "a.gltf");
+        let model = read(&builder.files().with("a.png", png(&[[0; 4]])), "a.gltf").unwrap();
         assert_eq!(model.materials[0].alpha_mode, mode);
     }
 }
@@ -359,6 +359,7 @@ fn the_tree_is_the_scenes() {
     builder.document["extensions"] = json!({"KHR_lights_punctual": {"lights": [
         {"type": "spot", "intensity": 3, "spot": {"outerConeAngle": 0.5}}]}});
     builder.push("cameras", json!({"type": "perspective", "perspective": {"yfov": 0.5, "znear": 0.1}}));
+    let model = |builder: &Builder| read(&builder.files(), "a.gltf").unwrap();
     let found = model(&builder);
     let names: Vec<&str> = found.nodes.iter().map(|node| node.name.as_str()).collect();
     assert_eq!(names, ["root", "matrix", "leaf", "seen"]);
@@ -447,4 +448,51 @@ fn rotations_take_the_shorter_way() {
     }
     let scaled = animated("scale", "VEC3", "LINEAR", &[1.0, 1.0, 1.0, 3.0, 1.0, 1.0, 3.0, 1.0, 1.0]);
     assert!(scaled.pose(Some(0), 1.5)[0].abs_diff_eq(Mat4::from_scale(Vec3::new(2.0, 1.0, 1.0)), 1e-6));
+}
+
+#[test]
+fn nodes_that_turn_inside_out_are_told() {
+    let turning = |keys: &[f64]| animated("scale", "VEC3", "LINEAR", keys).turning(Some(0));
+    let one = [1.0, 1.0, 1.0];
+    assert_eq!(turning(&[one, [1.0, -1.0, 1.0], one].concat()), [true]);
+    assert_eq!(turning(&[[0.0; 3], [1.0, -1.0, 1.0], [1.0, -1.0, 1.0]].concat()), [true]);
+    for (start, end) in [([0.0; 3], one), ([1.0, -1.0, 1.0], [2.0, -3.0, 1.0])] {
+        assert_eq!(turning(&[start, end, end].concat()), [false], "{start:?}");
+    }
+    let mut builder = Builder::triangle();
+    builder.document["nodes"] = json!([{"children": [1]}, {"mesh": 0}, {"mesh": 0}]);
+    builder.document["scenes"][0]["nodes"] = json!([0, 2]);
+    let input = builder.accessor("SCALAR", F32, &[0.0, 1.0]);
+    let output = builder.accessor("VEC3", F32, &[1.0, 1.0, 1.0, 1.0, 1.0, -1.0]);
+    builder.push(
+        "animations",
+        json!({"channels": [{"sampler": 0, "target": {"node": 0, "path": "scale"}}],
+               "samplers": [{"input": input, "output": output}]}),
+    );
+    let found = model(&builder);
+    let (with_mesh, moved): (Vec<bool>, Vec<bool>) =
+        found.nodes.iter().zip(found.turning(Some(0))).map(|(node, turns)| (node.parent.is_some(), turns)).unzip();
+    assert_eq!(moved.iter().filter(|turns| **turns).count(), 2, "{with_mesh:?} {moved:?}");
+    assert!(with_mesh.iter().zip(&moved).all(|(is_child, turns)| !is_child || *turns));
+    assert_eq!(found.turning(None), [false; 3]);
+}
+
+#[test]
+fn a_box_is_exact_until_it_would_cost_too_much() {
+    // A triangle turned by 45 degrees about z: its own box is 1 x 1, and that of its box is wider.
+    let (s, turn) = (0.5f64.sqrt(), 22.5f64.to_radians());
+    let mut builder = Builder::triangle();
+    builder.document["nodes"] =
+        json!([{"mesh": 0, "rotation": [0, 0, (2.0 * turn / 2.0).sin(), (2.0 * turn / 2.0).cos()]}]);
+    let one = model(&builder);
+    let bounds = |model: &Model| model.bounds(&model.pose(None, 0.0)).unwrap();
+    let near = |found: Vec3, expected: [f64; 3]| found.as_dvec3().abs_diff_eq(expected.into(), 1e-6);
+    let exact = bounds(&one);
+    assert!(near(exact.min, [-s, 0.0, 0.0]) && near(exact.max, [s, s, 0.0]), "{exact:?}");
+    let mut many = one;
+    let points = &mut many.meshes[0].primitives[0].positions;
+    *points = points.iter().copied().cycle().take(9_000_000).collect();
+    many.nodes.push(many.nodes[0].clone());
+    let rough = bounds(&many);
+    assert!(near(rough.min, [-s, 0.0, 0.0]) && near(rough.max, [s, 2.0 * s, 0.0]), "{rough:?}");
 }

@@ -54,6 +54,15 @@ fn rich() -> Builder {
     b
 }
 
+/// Many nodes that share a mesh of many primitives that share their vertices.
+fn crowd() -> Vec<u8> {
+    let mut builder = Builder::triangle();
+    builder.document["scenes"][0]["nodes"] = (0..30).collect();
+    builder.document["nodes"] = (0..30).map(|_| json!({"mesh": 0})).collect();
+    builder.document["meshes"][0]["primitives"] = (0..30).map(|_| json!({"attributes": {"POSITION": 0}})).collect();
+    builder.glb()
+}
+
 /// Small files of each form, with the files that they name.
 fn seeds() -> Vec<(&'static str, Vec<u8>, MemoryFiles)> {
     let rich = rich();
@@ -74,6 +83,7 @@ fn seeds() -> Vec<(&'static str, Vec<u8>, MemoryFiles)> {
         ("a.gltf", compact, files),
         ("a.gltf", serde_json::to_vec(&embedded).unwrap(), MemoryFiles::default()),
         ("a.glb", rich.glb(), MemoryFiles::default()),
+        ("a.glb", crowd(), MemoryFiles::default()),
         ("a.obj", obj.as_bytes().to_vec(), with_mtl),
         ("a.mtl", mtl.as_bytes().to_vec(), pictures.with("a.obj", obj)),
         ("a.vtk", grid(true), MemoryFiles::default()),
@@ -143,9 +153,16 @@ fn size(model: &Model) -> usize {
     triangles + model.images.iter().map(|image| image.texels.len() * 4).sum::<usize>()
 }
 
+/// Bytes of what whoever draws a model keeps for it: a call, a place and a matrix for each primitive of each node.
+fn drawn(model: &Model) -> usize {
+    let shown = model.nodes.iter().filter_map(|node| model.meshes.get(node.mesh?));
+    shown.map(|mesh| mesh.primitives.len()).sum::<usize>() * 256
+}
+
 /// Everything that a reader promises of a model.
 fn check(name: &str, model: &Model, justified: usize) {
-    assert!(size(model) <= justified, "{name}: {} bytes from {justified}", size(model));
+    let made = size(model) + drawn(model);
+    assert!(made <= justified, "{name}: {made} bytes from {justified}");
     for primitive in model.meshes.iter().flat_map(|mesh| &mesh.primitives) {
         let count = primitive.positions.len();
         let counts = [primitive.normals.len(), primitive.tangents.len(), primitive.uv0.len(), primitive.uv1.len()];
@@ -166,6 +183,7 @@ fn check(name: &str, model: &Model, justified: usize) {
         assert!(texture.image < model.images.len() && texture.uv_set < 2, "{name}");
     }
     for animation in 0..=model.animations.len() {
+        assert_eq!(model.turning(Some(animation)).len(), model.nodes.len(), "{name}");
         for time in [f64::NAN, -1.0, 0.0, 0.5, 1.0, 1e30] {
             assert_eq!(model.pose(Some(animation), time).len(), model.nodes.len(), "{name}");
         }

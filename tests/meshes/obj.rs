@@ -194,3 +194,40 @@ fn what_is_no_surface_is_said() {
                     warning: line 6: curves and surfaces are not read\n";
     assert_eq!(said(&model.diagnostics, "a.obj"), expected);
 }
+
+#[test]
+fn keywords_of_materials_are_known_however_they_are_spelt() {
+    let files = MemoryFiles::default().with("x/a.png", png(&[[1, 2, 3, 255]]));
+    let (found, model) = material("kd 0.1 0.2 0.3\nPR 0.5\nmap_kd a.png\nMAP_bump a.png\n", files);
+    assert_eq!(found.base_color_factor, [0.1, 0.2, 0.3, 1.0]);
+    assert_eq!(found.roughness_factor, 0.5);
+    assert!(found.base_color_texture.is_some() && found.normal_texture.is_some());
+    assert_eq!(model.images.len(), 1);
+}
+
+#[test]
+fn whole_paths_of_another_computer_lead_to_files_beside() {
+    let files = MemoryFiles::default()
+        .with("x/a.obj", format!("mtllib C:\\work\\sub.mtl\n{TRIANGLE}usemtl m\nf 1 2 3\n"))
+        .with("x/sub.mtl", "newmtl m\nmap_Kd C:\\Users\\me\\skin.png\nmap_Ke tex\\glow.png\n")
+        .with("x/skin.png", png(&[[1, 2, 3, 255]]))
+        .with("x/tex/glow.png", png(&[[4, 5, 6, 255]]))
+        .with("Users/me/skin.png", png(&[[9; 4]]));
+    let model = read(&files, "x/a.obj").unwrap();
+    let texels: Vec<_> = model.images.iter().map(|image| image.texels[0]).collect();
+    assert_eq!(texels, [[1, 2, 3, 255], [4, 5, 6, 255]]);
+    let expected = "note: line 1, mtllib: `C:/work/sub.mtl` is a path of elsewhere: `sub.mtl` is read\n\
+                    note: sub.mtl, line 1: `C:/Users/me/skin.png` is a path of elsewhere: `skin.png` is read\n";
+    assert_eq!(said(&model.diagnostics, "x/a.obj"), expected);
+}
+
+#[test]
+fn names_with_spaces_stand_on_one_line_with_others() {
+    let files = MemoryFiles::default()
+        .with("a.obj", format!("mtllib my own.mtl  other.mtl\n{TRIANGLE}usemtl a\nf 1 2 3\nusemtl b\nf 1 2 3\n"))
+        .with("my own.mtl", "newmtl a\nKd 1 0 0\n")
+        .with("other.mtl", "newmtl b\nKd 0 1 0\n");
+    let found = whole(&files, "a.obj");
+    let colors: Vec<_> = found.materials.iter().map(|material| material.base_color_factor[..2].to_vec()).collect();
+    assert_eq!(colors, [[1.0, 0.0], [0.0, 1.0]]);
+}

@@ -203,6 +203,31 @@ fn nodes(sheet: &mut Sheet) {
     });
     sheet.set("two parents", "/nodes", json!([{"children": [2]}, {"children": [2]}, {"mesh": 0}]));
     sheet.set("a transform that is not finite", "/nodes", json!([{"mesh": 0, "translation": [1e39, 0, 0]}]));
+    let huge = json!([{"children": [1]}, {"name": "far", "mesh": 0, "scale": [1e30, 1e30, 1e30], "children": [2]}, {"mesh": 0}]);
+    sheet.changed("transforms whose product is not finite", |b| {
+        b.document["nodes"] = huge;
+        b.document["nodes"][0]["scale"] = json!([1e30, 1e30, 1e30]);
+    });
+    sheet.set(
+        "a node that is too far away",
+        "/nodes",
+        json!([{"mesh": 0, "name": "far", "translation": [0, 0, 2e18]}]),
+    );
+    sheet.changed("many nodes that share a mesh of many primitives", |b| {
+        b.document["scenes"][0]["nodes"] = (0..1000).collect();
+        b.document["nodes"] = (0..1000).map(|_| json!({"mesh": 0})).collect();
+        b.document["meshes"][0]["primitives"] = (0..1000).map(|_| json!({"attributes": {"POSITION": 0}})).collect();
+    });
+    let lamps = |b: &mut Builder| {
+        let on = json!({"KHR_lights_punctual": {"light": 0}});
+        b.document["extensions"] = json!({"KHR_lights_punctual": {"lights": [{"type": "point"}]}});
+        b.document["nodes"] = json!([{"mesh": 0, "children": [1], "extensions": on.clone()}, {"extensions": on}]);
+    };
+    sheet.changed("lights", lamps);
+    sheet.changed("lights that are required", |b| {
+        lamps(b);
+        b.document["extensionsRequired"] = json!(["KHR_lights_punctual"]);
+    });
     sheet.set("a rotation of no length", "/nodes", json!([{"mesh": 0, "rotation": [0, 0, 0, 0]}]));
     sheet.set("a skin", "/nodes", json!([{"mesh": 0, "skin": 0}]));
     sheet.set("a camera that is not there", "/nodes", json!([{"mesh": 0, "camera": 0}]));
@@ -239,6 +264,10 @@ fn materials(sheet: &mut Sheet) {
         with_texture(b, json!({"uri": "a.png"}));
         b.document["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"]["texCoord"] = json!(2);
     });
+    sheet.changed("a material that lets light through", |b| {
+        let glass = json!({"KHR_materials_transmission": {"transmissionFactor": 1}});
+        b.push("materials", json!({"name": "glass", "extensions": glass}));
+    });
     sheet.changed("factors out of range", |b| {
         b.push("materials", json!({"pbrMetallicRoughness": {"metallicFactor": 3, "roughnessFactor": -1}}));
     });
@@ -260,6 +289,10 @@ fn animations(sheet: &mut Sheet) {
     sheet.changed("no times", |b| animated(b, &[], "scale", 0));
     sheet.changed("a path of nothing", |b| animated(b, &[0.0], "colour", 0));
     sheet.changed("weights of morph targets", |b| animated(b, &[0.0], "weights", 0));
+    sheet.changed("what is no node", |b| {
+        animated(b, &[0.0], "pointer", 0);
+        b.document["animations"][0]["channels"][0]["target"] = json!({"path": "pointer"});
+    });
     sheet.changed("a node that is not there", |b| animated(b, &[0.0], "scale", 4));
     sheet.changed("rotations of three numbers", |b| animated(b, &[0.0], "rotation", 0));
     sheet.changed("a sampler of an animation that is not there", |b| {
@@ -291,11 +324,18 @@ fn objs(sheet: &mut Sheet) {
     obj(sheet, "a number that is none", "v 1 2 three");
     obj(sheet, "numbers that are too few", "v 1 2\nvn 1");
     obj(sheet, "a number that is not finite", "v 1 2 inf\nv 1e99 0 0");
+    obj(sheet, "a vertex that is too far away", "v 3e38 0 0\nf 1 2 4");
     obj(sheet, "normals of no length", "vn 0 0 0\nf 1//1 2//1 3//1");
     let many: String = (0..100).map(|k| format!("f 1 2 {}\n", k + 4)).collect();
     obj(sheet, "the same fault a hundred times", &many);
     obj(sheet, "materials that are not there", "mtllib gone.mtl\nusemtl red\nf 1 2 3");
     obj(sheet, "materials outside of the folder", "mtllib ../a.mtl\nf 1 2 3");
+    obj(sheet, "several files of materials that are not there", "mtllib ../x.mtl my own.MTL\nf 1 2 3");
+    let beside = MemoryFiles::default()
+        .with("a.obj", "mtllib C:\\work\\a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl red\nf 1 2 3\n")
+        .with("a.mtl", "newmtl red\nmap_Kd C:\\Users\\me\\grey.png\nmap_Pr /home/me/gone.png\n")
+        .with("grey.png", png(&[[7; 4]]));
+    sheet.files("whole paths of another computer", &beside, "a.obj");
     let text = "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl red\nf 1 2 3\n";
     let mtl = |text: &str| format!("# colours\n{text}");
     let cases = [
@@ -305,6 +345,11 @@ fn objs(sheet: &mut Sheet) {
         ("a picture that is missing", "newmtl red\nmap_Kd gone.png\n"),
         ("a picture of the net", "newmtl red\nmap_Kd http://example.org/a.png\n"),
         ("a map of heights", "newmtl red\nbump grey.png\n"),
+        (
+            "maps without a place",
+            "newmtl red\nmap_Ks grey.png\nKS 1 1 1\nmap_ks grey.png\nrefl -type sphere grey.png\n",
+        ),
+        ("words that are none of MTL", "newmtl red\nKq 1\nkq 2\nmap_Foo x\n# Kz\nx\ny\nz\n"),
         ("two pictures of unlike size", "newmtl red\nmap_Pr grey.png\nmap_Pm wide.png\n"),
     ];
     for (title, content) in cases {

@@ -79,11 +79,11 @@ impl Meshes {
 }
 
 impl Entry {
-    /// The poses that its animation goes through, at even times.
-    pub fn poses(&self) -> Vec<Vec<Mat4>> {
+    /// Even times of its animation, all through it.
+    pub fn times_s(&self) -> impl Iterator<Item = f64> + use<> {
         let animation = self.animation.and_then(|a| self.model.animations.get(a));
-        let Some(duration_s) = animation.map(|a| f64::from(a.duration_s)) else { return vec![self.pose(0.0)] };
-        (0..=POSES).map(|i| self.model.pose(self.animation, duration_s * f64::from(i) / f64::from(POSES))).collect()
+        let duration_s = animation.map_or(0.0, |a| f64::from(a.duration_s));
+        (0..=if animation.is_some() { POSES } else { 0 }).map(move |i| duration_s * f64::from(i) / f64::from(POSES))
     }
 
     /// Body from node, for each node, at a time of the scene.
@@ -119,4 +119,19 @@ pub(super) fn animation(entry: &MeshEntry, model: &Model) -> Result<(Option<usiz
         [] => error.hint("the file has no animations"),
         names => error.nearest(&name.value, names.iter().copied()).hint(format!("it has {}", names.join(", "))),
     })
+}
+
+/// What is worth saying of an entry that does not say which of several animations it plays.
+pub(in crate::host) fn choice(entry: &MeshEntry, model: &Model) -> Option<Diagnostic> {
+    let Playing::Plays { animation: None, .. } = entry.playing else { return None };
+    let names: Vec<String> = model.animations.iter().map(|a| format!("`{}`", a.name)).collect();
+    let [first, others @ ..] = names.as_slice() else { return None };
+    if others.is_empty() {
+        return None;
+    }
+    let message = format!("`{}`: of its {} animations the first is played, {first}", entry.file.value, names.len());
+    let (most, others) = (others.len().min(8), others.len());
+    let more = if others > most { " and more" } else { "" };
+    let hint = format!("`animation:` of a body chooses; there are also {}{more}", names[1..=most].join(", "));
+    Some(Diagnostic::note(Code::ASSET_NOTE, message).at(entry.file.span, "named here").hint(hint))
 }

@@ -96,6 +96,21 @@ impl Bundle {
         self.others.insert(name.to_owned(), found);
     }
 
+    /// Fetches what `name` means; where it is a whole path of another computer, also a file of that
+    /// name in `folder`.
+    pub(super) fn fetch_or_beside(&mut self, files: &dyn Files, folder: &Path, name: &str) {
+        self.fetch(files, name);
+        if let Some(beside) = beside(folder, name).filter(|_| self.other(name).is_err()) {
+            self.fetch(files, &beside);
+        }
+    }
+
+    /// What [`Bundle::fetch_or_beside`] found, with the name under which it did.
+    pub(super) fn other_or_beside(&self, folder: &Path, name: &str) -> Result<(String, &[u8]), &Refused> {
+        let found = |name: String| self.other(&name).map(|bytes| (name, bytes));
+        found(name.to_owned()).or_else(|why| beside(folder, name).and_then(|name| found(name).ok()).ok_or(why))
+    }
+
     /// What a reference led to.
     pub(super) fn other(&self, name: &str) -> Result<&[u8], &Refused> {
         self.others.get(name).map_or(Err(&Refused::Missing), |found| found.as_deref())
@@ -114,11 +129,27 @@ fn read(files: &dyn Files, path: &Path) -> io::Result<Arc<[u8]>> {
     }
 }
 
+/// A file in `folder` of the last name of a path, if that begins at a root or a drive.
+fn beside(folder: &Path, name: &str) -> Option<String> {
+    let name = name.replace('\\', "/");
+    let (_, last) = name.rsplit_once('/').filter(|_| name.starts_with('/') || drive(&name).is_some())?;
+    (!last.is_empty()).then(|| folder.join(last).to_string_lossy().into_owned())
+}
+
+/// What follows the letter of a drive.
+fn drive(name: &str) -> Option<&str> {
+    let (letter, rest) = name.split_once(':')?;
+    (letter.len() == 1 && letter.chars().all(|c| c.is_ascii_alphabetic())).then_some(rest)
+}
+
 /// The path that a reference means, from the folder of the file that is read on. A file that came
 /// from elsewhere must not make this program open what its sender could not have meant to send.
 fn inside(name: &str) -> Result<PathBuf, Refused> {
     if name.split_once(':').is_some_and(|(scheme, _)| scheme.len() > 1 && scheme.chars().all(|c| c.is_alphanumeric())) {
         return Err(Refused::Remote);
+    }
+    if drive(name).is_some() {
+        return Err(Refused::Outside);
     }
     let inner = files::normalize(Path::new(&name.replace('\\', "/")));
     let stays = inner.components().all(|part| matches!(part, Component::Normal(_)));

@@ -33,7 +33,7 @@ pub use model::{
     Material, Mesh, Model, Node, Primitive, Sampler, TextureUse, UvTransform, Wrap,
 };
 pub use pose::{Pose, is_mirrored};
-use report::Report;
+use report::{Report, shown};
 
 type Gatherer = fn(&mut Bundle, &dyn Files);
 type Reader = fn(&Bundle, &mut Report) -> Option<Model>;
@@ -84,6 +84,9 @@ pub fn read(bundle: &Bundle) -> Result<Model, Diagnostics> {
         return Err(report.finish());
     }
     let model = reader(bundle, &mut report);
+    if let Some(model) = model.as_ref().filter(|_| !report.has_errors()) {
+        check_extent(model, &mut report);
+    }
     match model.filter(|_| !report.has_errors()) {
         Some(mut model) => {
             if model.triangle_count() == 0 {
@@ -94,4 +97,15 @@ pub fn read(bundle: &Bundle) -> Result<Model, Diagnostics> {
         }
         None => Err(report.finish()),
     }
+}
+
+/// Metres along an axis, up to which single precision still squares and multiplies what it is given.
+pub const FARTHEST_M: f32 = 1e18;
+
+/// Reports what lies so far away that nothing can be reckoned with it.
+fn check_extent(model: &Model, report: &mut Report) {
+    let Some(index) = model.beyond(FARTHEST_M, &model.pose(None, 0.0)) else { return };
+    let name = &model.nodes[index].name;
+    let place = if name.is_empty() { String::new() } else { format!("node {}", shown(name)) };
+    report.error(place, format!("its vertices reach beyond {FARTHEST_M:e} m, with which nothing can be reckoned"));
 }

@@ -2,7 +2,10 @@
 
 use glam::{Mat4, Quat, Vec3};
 
-use super::model::{Animation, Bounds, Channel, Interpolation, Keys, Local, Model, Primitive};
+use super::model::{Animation, Bounds, Channel, Interpolation, Keys, Local, Mesh, Model, Node, Primitive};
+
+/// Vertices that are looked at one by one for a box, before the boxes of meshes have to do.
+const MOST_EXACT: usize = 1 << 24;
 
 /// Where a model's nodes are, with what it takes to find out.
 #[derive(Clone, Debug, Default)]
@@ -36,13 +39,48 @@ impl Model {
         }
     }
 
-    /// The box around all triangles, with nodes where `world_from_node` says; none without any.
+    /// The box around all triangles, with nodes where `world_from_node` says; none without any. Where
+    /// many nodes share large meshes it is that around the boxes of those.
     pub fn bounds(&self, world_from_node: &[Mat4]) -> Option<Bounds> {
-        let drawn = self.nodes.iter().zip(world_from_node).filter_map(|(node, world)| Some((node.mesh?, world)));
-        let boxes = drawn.flat_map(|(mesh, world)| {
-            self.meshes.get(mesh).into_iter().flat_map(|mesh| &mesh.primitives).filter_map(|p| p.bounds(*world))
+        let own: Vec<Option<Bounds>> = self.meshes.iter().map(|mesh| mesh.bounds(Mat4::IDENTITY)).collect();
+        let is_exact = self.drawn_vertices() <= MOST_EXACT;
+        let boxes = self.nodes.iter().zip(world_from_node).filter_map(|(node, world)| match node.mesh? {
+            mesh if is_exact => self.meshes.get(mesh)?.bounds(*world),
+            mesh => Some((*own.get(mesh)?)?.moved(*world)),
         });
-        boxes.reduce(|a, b| Bounds { min: a.min.min(b.min), max: a.max.max(b.max) })
+        boxes.reduce(Bounds::with)
+    }
+
+    /// Vertices of all nodes, those of a mesh as often as it is shown.
+    fn drawn_vertices(&self) -> usize {
+        let of = |mesh: &Mesh| mesh.primitives.iter().map(|primitive| primitive.positions.len()).sum::<usize>();
+        let of: Vec<usize> = self.meshes.iter().map(of).collect();
+        self.nodes.iter().filter_map(|node| of.get(node.mesh?)).fold(0, |sum, count| sum.saturating_add(*count))
+    }
+
+    /// The first node that reaches further than `most` along an axis, or to numbers that are none.
+    pub(super) fn beyond(&self, most: f32, world_from_node: &[Mat4]) -> Option<usize> {
+        let own: Vec<Option<Bounds>> = self.meshes.iter().map(|mesh| mesh.bounds(Mat4::IDENTITY)).collect();
+        let is_beyond = |node: &Node, world: &Mat4| {
+            let own = node.mesh.and_then(|mesh| *own.get(mesh)?);
+            own.is_some_and(|own| !own.stays_within(most, *world))
+        };
+        self.nodes.iter().zip(world_from_node).position(|(node, world)| is_beyond(node, world))
+    }
+
+    /// Which nodes an animation may turn inside out on its way, with those below them.
+    pub fn turning(&self, animation: Option<usize>) -> Vec<bool> {
+        let mut turning = vec![false; self.nodes.len()];
+        let channels = animation.and_then(|index| self.animations.get(index)).map_or(&[][..], |a| &a.channels);
+        for channel in channels {
+            if let Some(turns) = turning.get_mut(channel.node) {
+                *turns |= channel.turns();
+            }
+        }
+        for (index, node) in self.nodes.iter().enumerate() {
+            turning[index] |= node.parent.is_some_and(|parent| turning[parent]);
+        }
+        turning
     }
 
     /// Which animation bears a name.
@@ -57,17 +95,49 @@ impl Model {
     }
 }
 
+impl Bounds {
+    /// The box around both.
+    pub fn with(self, other: Self) -> Self {
+        Self { min: self.min.min(other.min), max: self.max.max(other.max) }
+    }
+
+    /// The box around this one in another space.
+    pub fn moved(self, to: Mat4) -> Self {
+        let corners = self.corners(to).map(|p| Self { min: p, max: p });
+        corners.into_iter().fold(corners[0], Self::with)
+    }
+
+    /// Where its corners are in another space.
+    pub fn corners(self, to: Mat4) -> [Vec3; 8] {
+        let part = |corner: usize, axis: usize| if corner >> axis & 1 == 0 { self.min[axis] } else { self.max[axis] };
+        std::array::from_fn(|n| to.transform_point3(Vec3::new(part(n, 0), part(n, 1), part(n, 2))))
+    }
+
+    /// Whether it reaches no further than `most` along each axis in another space, and leads to numbers there.
+    pub fn stays_within(self, most: f32, to: Mat4) -> bool {
+        self.corners(to).iter().flat_map(|corner| corner.to_array()).all(|x| x.abs() <= most)
+    }
+}
+
+impl Mesh {
+    /// The box around its vertices in another space; none without vertices.
+    fn bounds(&self, to: Mat4) -> Option<Bounds> {
+        self.primitives.iter().filter_map(|primitive| primitive.bounds(to)).reduce(Bounds::with)
+    }
+}
+
 impl Primitive {
     /// The box around its vertices in another space; none without vertices.
     pub fn bounds(&self, to: Mat4) -> Option<Bounds> {
         let points = self.positions.iter().map(|p| to.transform_point3(Vec3::from_array(*p)));
-        points.map(|p| Bounds { min: p, max: p }).reduce(|a, b| Bounds { min: a.min.min(b.min), max: a.max.max(b.max) })
+        points.map(|p| Bounds { min: p, max: p }).reduce(Bounds::with)
     }
 }
 
 /// Whether a transform turns counter-clockwise into clockwise, so that the other side is the front.
 pub fn is_mirrored(world_from_node: Mat4) -> bool {
-    world_from_node.determinant() < 0.0
+    // A scale of 1e-15 has a cube that single precision cannot tell from 0.
+    world_from_node.as_dmat4().determinant() < 0.0
 }
 
 impl Local {
@@ -110,6 +180,15 @@ struct At {
 }
 
 impl Channel {
+    /// Whether it scales by what is positive, or none, and by what is negative. Splines are taken
+    /// at their keys and not between them.
+    fn turns(&self) -> bool {
+        let Keys::Scale(keys) = &self.keys else { return false };
+        let is_cubic = self.interpolation == Interpolation::Cubic;
+        let values = || keys.iter().enumerate().filter(|(at, _)| !is_cubic || at % 3 == 1).map(|(_, key)| key);
+        (0..3).any(|axis| values().any(|key| key[axis] < 0.0) && values().any(|key| key[axis] >= 0.0))
+    }
+
     fn at(&self, time_s: f64) -> Option<At> {
         let last = self.times_s.len().checked_sub(1)?;
         let after = self.times_s.partition_point(|t| f64::from(*t) <= time_s);

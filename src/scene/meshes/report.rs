@@ -50,13 +50,18 @@ impl Report {
 
     /// Takes room for `bytes`; false, with an error, if the file cannot justify them.
     pub fn take(&mut self, bytes: usize, place: impl Display) -> bool {
+        self.take_for(bytes, "triangles", place)
+    }
+
+    /// The same for what is no triangles.
+    pub fn take_for(&mut self, bytes: usize, what: &str, place: impl Display) -> bool {
         match self.room.checked_sub(bytes) {
             Some(left) => {
                 self.room = left;
                 true
             }
             None => {
-                let message = "the file describes far more triangles than its size can justify";
+                let message = format!("the file describes far more {what} than its size can justify");
                 self.error(place, format!("{message}: reading stops here"));
                 self.room = 0;
                 false

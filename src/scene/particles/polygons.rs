@@ -53,14 +53,18 @@ impl Polygons {
     }
 }
 
-/// Numbers of a file as those of `count` points.
-pub fn indices(values: &Values, count: usize) -> Result<Vec<u32>, ReadError> {
+/// Numbers of a file as those of `count` points. `what` ends at the `ends`, for messages.
+pub fn indices(values: &Values, count: usize, what: &str, ends: &[usize]) -> Result<Vec<u32>, ReadError> {
     let within = |number: i32| u32::try_from(number).ok().filter(|index| (*index as usize) < count);
     let numbers = values.to_i32().into_iter().enumerate();
     numbers
         .map(|(at, number)| {
-            let has = counted(count, "point");
-            within(number).ok_or_else(|| ReadError::new(format!("corner {at} is point {number}, of {has}")))
+            within(number).ok_or_else(|| {
+                let of = ends.partition_point(|end| *end <= at);
+                let corner = at - of.checked_sub(1).and_then(|before| ends.get(before)).unwrap_or(&0);
+                let has = counted(count, "point");
+                ReadError::new(format!("{what} {of}, corner {corner}: it is point {number}, of {has}"))
+            })
         })
         .collect()
 }

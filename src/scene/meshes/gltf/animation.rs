@@ -40,6 +40,10 @@ fn channel(
         report.warn(place, "morph targets are not read: what moves them is left out");
         return None;
     }
+    if target.path == "pointer" {
+        report.note(place, "it moves something other than a node, and is left out");
+        return None;
+    }
     let Some(sampler) = animation.samplers.get(channel.sampler) else {
         report.error(place, format!("there is no sampler {}", channel.sampler));
         return None;

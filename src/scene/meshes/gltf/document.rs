@@ -40,6 +40,7 @@ pub struct Reference {
 #[serde(rename_all = "camelCase", default)]
 pub struct Document {
     pub extensions_used: Vec<String>,
+    pub extensions_required: Vec<String>,
     pub scene: Option<usize>,
     pub scenes: Vec<Scene>,
     pub nodes: Vec<Node>,

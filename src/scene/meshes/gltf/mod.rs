@@ -15,7 +15,7 @@ use crate::files::Files;
 
 use super::bundle::Bundle;
 use super::model::{Mesh, Model};
-use super::report::{Report, shown};
+use super::report::{Report, counted, shown};
 use accessor::Data;
 use container::{Address, Container};
 use document::{Document, Head, References};
@@ -63,8 +63,20 @@ pub(super) fn read(bundle: &Bundle, report: &mut Report) -> Option<Model> {
     model.cameras = nodes::cameras(&document);
     model.lights = nodes::lights(&document);
     let placed = nodes::read(&document, &mut model, report)?;
+    take_draws(&model, report)?;
+    note_unused(&document, &model, report);
     model.animations = animation::read(&data, &placed, &model.nodes, report);
     Some(model)
+}
+
+/// What whoever draws a model keeps for each primitive of each node: a call, a place and a matrix.
+const DRAW_BYTES: usize = 256;
+
+/// Takes room for all that is drawn: many nodes may share a mesh of many primitives.
+fn take_draws(model: &Model, report: &mut Report) -> Option<()> {
+    let shown = model.nodes.iter().filter_map(|node| model.meshes.get(node.mesh?));
+    let draws = shown.fold(0_usize, |sum, mesh| sum.saturating_add(mesh.primitives.len()));
+    report.take_for(draws.saturating_mul(DRAW_BYTES), "copies of its meshes", "nodes").then_some(())
 }
 
 fn meshes(data: &Data<'_>, materials: &mut material::Materials, report: &mut Report) -> Vec<Mesh> {
@@ -116,6 +128,27 @@ fn check_head(json: &[u8], report: &mut Report) -> Option<()> {
     let message = format!("the file requires {}, which cannot be read", unknown.join(", "));
     report.error_with_hint("extensionsRequired", message, "export the model again without it");
     None
+}
+
+/// Says what is understood and yet not seen in a picture: worth a warning if the file insists on it.
+fn note_unused(document: &Document, model: &Model, report: &mut Report) {
+    let mut say = |extension: &str, message: String| match document.extensions_required.iter().any(|e| e == extension) {
+        true => report.warn("", message),
+        false => report.note("", message),
+    };
+    let lights = model.nodes.iter().filter(|node| node.light.is_some()).count();
+    if lights > 0 {
+        let are = if lights == 1 { "is" } else { "are" };
+        let lights = counted(lights, "light of the file", "lights of the file");
+        say("KHR_lights_punctual", format!("{lights} {are} not used: those of a scene are, under `lights:`"));
+    }
+    let clear = model.materials.iter().filter(|material| material.transmission_factor > 0.0).count();
+    if clear > 0 {
+        let lets = if clear == 1 { "lets" } else { "let" };
+        let materials = counted(clear, "material", "materials");
+        let message = format!("{materials} {lets} light through, which is not drawn: they look as without it");
+        say("KHR_materials_transmission", if clear == 1 { message.replace("they look", "it looks") } else { message });
+    }
 }
 
 /// Says which extensions are read over.

@@ -19,6 +19,7 @@ pub fn read(document: &Document, model: &mut Model, report: &mut Report) -> Opti
     for (place, index) in order.iter().enumerate() {
         placed[*index] = Some(place);
     }
+    let mut world: Vec<Mat4> = Vec::with_capacity(order.len());
     for index in order {
         let from = &document.nodes[index];
         let place = name_of(document, index);
@@ -34,6 +35,13 @@ pub fn read(document: &Document, model: &mut Model, report: &mut Report) -> Opti
         if from.skin.is_some() {
             report.warn(&place, "skins are not read: the mesh stands as it was before it was bent");
         }
+        let above = node.parent.and_then(|parent| world.get(parent)).copied().unwrap_or(Mat4::IDENTITY);
+        let here = above * node.local.matrix();
+        // What stands below one that was said would say it again.
+        if above.is_finite() && !here.is_finite() {
+            report.error(&place, "with the transforms of the nodes above it, its own leads to numbers without end");
+        }
+        world.push(here);
         model.nodes.push(node);
     }
     model.roots = (0..model.nodes.len()).filter(|index| model.nodes[*index].parent.is_none()).collect();

@@ -29,9 +29,9 @@ pub fn model(from: &Statements, mut materials: Materials, report: &mut Report) -
     triangles.iter().for_each(|triangle| by_material.entry(triangle.material).or_default().push(triangle));
     let mut primitives = Vec::new();
     for (number, triangles) in by_material {
-        let name = number.and_then(|number| from.materials.get(number)).map(String::as_str);
+        let name = number.and_then(|number| from.materials.get(number)).map(|(line, name)| (*line, name.as_str()));
         let material = materials.index(name, report);
-        let place = name.map_or_else(String::new, |name| format!("material {}", shown(name)));
+        let place = name.map_or_else(String::new, |(_, name)| format!("material {}", shown(name)));
         let raw = gather(from, &triangles, &made);
         let map = materials.normal_map(material);
         primitives.extend(fill::finish(raw, Shading::Smooth, map, material, &place, report));

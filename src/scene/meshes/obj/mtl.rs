@@ -14,7 +14,7 @@
 
 use std::borrow::Cow;
 use std::collections::{BTreeSet, HashMap};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::folder;
@@ -32,6 +32,8 @@ pub struct Materials {
     known: HashMap<String, Material>,
     used: Vec<Material>,
     by_name: HashMap<Option<String>, usize>,
+    /// Keywords of which it was said that they are not read.
+    passed_over: Vec<String>,
     pictures: Pictures,
 }
 
@@ -39,6 +41,7 @@ pub struct Materials {
 #[derive(Default)]
 struct Said {
     place: String,
+    folder: PathBuf,
     numbers: HashMap<&'static str, Vec<f32>>,
     maps: HashMap<&'static str, Map>,
 }
@@ -46,7 +49,7 @@ struct Said {
 /// A use of a picture.
 #[derive(Clone, Debug, Default, PartialEq)]
 struct Map {
-    /// From the model's folder on.
+    /// As the file says it, with slashes.
     name: String,
     offset: [f32; 2],
     scale: [f32; 2],
@@ -54,6 +57,7 @@ struct Map {
     bump: f32,
 }
 
+// Writers differ in how they spell these: none is told from another by its case.
 const NUMBERS: &[&str] = &["Kd", "Ke", "Ns", "Ni", "d", "Tr", "Pr", "Pm"];
 const MAPS: &[(&str, &str)] = &[
     ("map_Kd", "map_Kd"),
@@ -63,18 +67,37 @@ const MAPS: &[(&str, &str)] = &[
     ("map_Pm", "map_Pm"),
     ("norm", "norm"),
     ("map_Bump", "bump"),
-    ("map_bump", "bump"),
     ("bump", "bump"),
 ];
+/// Pictures that have no place in the model.
+const OTHER_MAPS: &[&str] =
+    &["map_Ka", "map_Ks", "map_Ns", "map_Ps", "map_Tr", "map_refl", "refl", "disp", "map_disp", "decal"];
+/// Numbers that have no place in the model, and `map_aat`, which is none.
+const OTHER_NUMBERS: &[&str] =
+    &["Ka", "Ks", "Tf", "illum", "sharpness", "Ps", "Pc", "Pcr", "aniso", "anisor", "map_aat"];
 
-/// The pictures that a material file in `folder` names.
-pub fn pictures(text: &[u8], folder: &Path) -> BTreeSet<String> {
+fn is(keyword: &str) -> impl Fn(&&&str) -> bool {
+    move |known| known.eq_ignore_ascii_case(keyword)
+}
+
+fn map_called(keyword: &str) -> Option<&'static str> {
+    MAPS.iter().find(|(known, _)| known.eq_ignore_ascii_case(keyword)).map(|(_, known)| *known)
+}
+
+/// The pictures that a material file names.
+pub fn pictures(text: &[u8]) -> BTreeSet<String> {
     let named = lines(text).filter_map(|(_, line)| {
         let (keyword, rest) = split(&line)?;
-        MAPS.iter().find(|(known, _)| *known == keyword)?;
-        Some(map(rest, folder).name)
+        map_called(keyword)?;
+        Some(map(rest).name)
     });
     named.collect()
+}
+
+/// What a material file in `folder` means by a name, from the model's folder on.
+pub fn from(folder: &Path, name: &str) -> String {
+    let is_elsewhere = name.contains(':') || folder.as_os_str().is_empty();
+    if is_elsewhere { name.to_owned() } else { folder.join(name).to_string_lossy().into_owned() }
 }
 
 impl Materials {
@@ -85,18 +108,36 @@ impl Materials {
         for (number, line) in lines(text) {
             let Some((keyword, rest)) = split(&line) else { continue };
             let place = format!("{file}, line {number}");
-            if keyword == "newmtl" {
+            if keyword.eq_ignore_ascii_case("newmtl") {
                 self.close(name.replace(rest.trim_end().to_owned()), std::mem::take(&mut said), bundle, report);
-                said.place = place;
-            } else if let Some(known) = NUMBERS.iter().find(|known| **known == keyword) {
+                (said.place, said.folder) = (place, folder(file).to_owned());
+            } else if let Some(known) = NUMBERS.iter().find(is(keyword)) {
                 if let Some(values) = factors(rest, &place, report) {
                     said.numbers.insert(known, values);
                 }
-            } else if let Some((_, known)) = MAPS.iter().find(|(known, _)| *known == keyword) {
-                said.maps.insert(known, map(rest, folder(file)));
+            } else if let Some(known) = map_called(keyword) {
+                said.maps.insert(known, map(rest));
+            } else if !OTHER_NUMBERS.iter().any(|known| is(keyword)(&known)) {
+                self.pass_over(keyword, &place, report);
             }
         }
         self.close(name, said, bundle, report);
+    }
+
+    /// Says of a keyword that it is not read, once.
+    fn pass_over(&mut self, keyword: &str, place: &str, report: &mut Report) {
+        const MOST_UNKNOWN: usize = 3;
+        let known = OTHER_MAPS.iter().find(is(keyword));
+        let lower = keyword.to_ascii_lowercase();
+        let unknown = self.passed_over.iter().filter(|word| !OTHER_MAPS.iter().any(|known| is(word)(&known))).count();
+        if self.passed_over.contains(&lower) || known.is_none() && unknown >= MOST_UNKNOWN {
+            return;
+        }
+        match known {
+            Some(known) => report.note(place, format!("`{known}` has no place in the materials here, and is not read")),
+            None => report.warn(place, format!("{} is no statement of MTL", shown(keyword))),
+        }
+        self.passed_over.push(lower);
     }
 
     fn close(&mut self, name: Option<String>, said: Said, bundle: &Bundle, report: &mut Report) {
@@ -106,17 +147,18 @@ impl Materials {
         }
     }
 
-    /// The material of a name; one like plaster where there is none.
-    pub fn index(&mut self, name: Option<&str>, report: &mut Report) -> usize {
+    /// The material of a name that a line gives; one like plaster where there is none.
+    pub fn index(&mut self, named: Option<(usize, &str)>, report: &mut Report) -> usize {
+        let name = named.map(|(_, name)| name);
         let key = name.map(str::to_owned);
         if let Some(index) = self.by_name.get(&key) {
             return *index;
         }
         let material = name.and_then(|name| self.known.get(name)).cloned().unwrap_or_else(|| {
-            if let Some(name) = name.filter(|_| !self.known.is_empty()) {
+            if let Some((line, name)) = named.filter(|_| !self.known.is_empty()) {
                 let close = nearest(name, self.known.keys().map(String::as_str));
                 let close = close.map(|close| format!("; did you mean {}?", shown(close))).unwrap_or_default();
-                report.warn("usemtl", format!("no material is called {}{close}", shown(name)));
+                report.warn(format!("line {line}, usemtl"), format!("no material is called {}{close}", shown(name)));
             }
             Material { name: name.unwrap_or_default().to_owned(), ..Material::plain() }
         });
@@ -151,7 +193,7 @@ fn factors(rest: &str, place: &str, report: &mut Report) -> Option<Vec<f32>> {
 }
 
 /// A picture with the options before its name.
-fn map(text: &str, folder: &Path) -> Map {
+fn map(text: &str) -> Map {
     let mut map = Map { scale: [1.0; 2], bump: 1.0, ..Map::default() };
     let mut rest = text.trim();
     while rest.starts_with('-') {
@@ -182,9 +224,7 @@ fn map(text: &str, folder: &Path) -> Map {
             _ => {}
         }
     }
-    let name = rest.replace('\\', "/");
-    let is_elsewhere = name.contains(':') || folder.as_os_str().is_empty();
-    map.name = if is_elsewhere { name } else { folder.join(name).to_string_lossy().into_owned() };
+    map.name = rest.replace('\\', "/");
     map
 }
 
@@ -324,14 +364,20 @@ impl Maker<'_> {
         let map = self.said.maps.get(which)?;
         let place = &self.said.place;
         let bundle = self.bundle;
-        let bytes = |report: &mut Report| match bundle.other(&map.name) {
-            Ok(bytes) => Some(Cow::Borrowed(bytes)),
+        let name = from(&self.said.folder, &map.name);
+        let bytes = |report: &mut Report| match bundle.other_or_beside(&self.said.folder, &name) {
+            Ok((found, bytes)) => {
+                if found != name {
+                    report.note(place, format!("{} is a path of elsewhere: {} is read", shown(&name), shown(&found)));
+                }
+                Some(Cow::Borrowed(bytes))
+            }
             Err(why) => {
-                report.warn(place, format!("{} {why}: the material goes without it", shown(&map.name)));
+                report.warn(place, format!("{} {why}: the material goes without it", shown(&name)));
                 None
             }
         };
-        let image = self.pictures.add(&map.name, place, self.report, bytes)?;
+        let image = self.pictures.add(&name, place, self.report, bytes)?;
         let wrap = if map.is_clamped { Wrap::Clamp } else { Wrap::Repeat };
         let [u, v] = map.scale;
         // v grows upwards in OBJ: 1 - ((1 - v) * scale + offset).

@@ -15,8 +15,8 @@ pub struct Statements {
     pub normals: Vec<[f32; 3]>,
     pub corners: Vec<Corner>,
     pub faces: Vec<Face>,
-    /// Names that `usemtl` gave, each once.
-    pub materials: Vec<String>,
+    /// Names that `usemtl` gave, each once, with the line that first did.
+    pub materials: Vec<(usize, String)>,
 }
 
 /// A corner of a face, by the numbers of its parts.
@@ -67,11 +67,11 @@ pub fn split(line: &str) -> Option<(&str, &str)> {
     (!keyword.is_empty()).then_some((keyword, rest.trim_start()))
 }
 
-/// What stands behind `mtllib`, line by line.
-pub fn material_files(bytes: &[u8]) -> Vec<String> {
-    let found = lines(bytes).filter_map(|(_, line)| {
+/// What stands behind `mtllib`, with the number of its line.
+pub fn material_files(bytes: &[u8]) -> Vec<(usize, String)> {
+    let found = lines(bytes).filter_map(|(number, line)| {
         let (keyword, rest) = split(&line)?;
-        (keyword == "mtllib" && !rest.is_empty()).then(|| rest.to_owned())
+        (keyword == "mtllib" && !rest.is_empty()).then(|| (number, rest.replace('\\', "/")))
     });
     found.collect()
 }
@@ -145,7 +145,7 @@ impl Reader<'_> {
                 }
             }
             "f" | "fo" => self.face(number, rest),
-            "usemtl" => self.material = (!rest.is_empty()).then(|| self.named(rest.trim_end())),
+            "usemtl" => self.material = (!rest.is_empty()).then(|| self.named(number, rest.trim_end())),
             "s" => {
                 self.has_smoothing = true;
                 self.smoothing = rest.split_whitespace().next().and_then(|word| word.parse().ok()).filter(|g| *g != 0);
@@ -196,11 +196,11 @@ impl Reader<'_> {
         self.found.positions.push([x, y, z]);
     }
 
-    fn named(&mut self, name: &str) -> usize {
+    fn named(&mut self, number: usize, name: &str) -> usize {
         if let Some(known) = self.by_name.get(name) {
             return *known;
         }
-        self.found.materials.push(name.to_owned());
+        self.found.materials.push((number, name.to_owned()));
         self.by_name.insert(name.to_owned(), self.found.materials.len() - 1);
         self.found.materials.len() - 1
     }

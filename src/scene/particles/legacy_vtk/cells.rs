@@ -107,7 +107,7 @@ impl Cells {
         let mut polygons = Polygons::default();
         let mut number = 0;
         for block in self.blocks {
-            let corners = indices(&block.corners, count)?;
+            let corners = indices(&block.corners, count, "cell", &block.ends)?;
             let starts = std::iter::once(0).chain(block.ends.iter().copied());
             for (start, end) in starts.zip(&block.ends) {
                 let cell = block.cell.unwrap_or_else(|| cell_of_type(types.get(number).copied()));

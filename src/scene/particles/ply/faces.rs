@@ -28,7 +28,7 @@ pub fn read_surface(bytes: &[u8]) -> Result<(Found, Polygons), ReadError> {
     };
     let mut polygons = Polygons::default();
     if let Some((corners, ends)) = faces {
-        let corners = indices(&corners, found.position.len() / 3)?;
+        let corners = indices(&corners, found.position.len() / 3, "face", &ends)?;
         let starts = std::iter::once(0).chain(ends.iter().copied());
         for (start, end) in starts.zip(&ends) {
             polygons.push(Cell::Polygon, corners.get(start..*end).unwrap_or_default());
