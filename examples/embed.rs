@@ -196,6 +196,9 @@ fn ball() -> Vec<[f32; 3]> {
 
 const SKY: [u32; 2] = [64, 32];
 
+/// What the host shows where the graph shows nothing.
+const BACKDROP: [f32; 3] = [0.5, 0.65, 0.85];
+
 /// The host's own texture, which the graph reads.
 fn sky(device: &wgpu::Device, queue: &wgpu::Queue) -> wgpu::Texture {
     let texture = device.create_texture(&wgpu::TextureDescriptor {
@@ -250,7 +253,7 @@ fn clear(encoder: &mut wgpu::CommandEncoder, picture: &wgpu::Texture) {
     });
 }
 
-/// Reads the picture back and saves it, with white at 1.
+/// Reads the picture back and saves it over the backdrop, with white at 1.
 fn save(device: &wgpu::Device, queue: &wgpu::Queue, picture: &wgpu::Texture, file: &str) -> Result<(), Box<dyn Error>> {
     let (width, height) = (picture.width(), picture.height());
     let row = (width * 8).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
@@ -272,8 +275,11 @@ fn save(device: &wgpu::Device, queue: &wgpu::Queue, picture: &wgpu::Texture, fil
         let at = (y * row + x * 8 + channel * 2) as usize;
         f32::from(half::f16::from_le_bytes([bytes[at], bytes[at + 1]]))
     };
+    // Alpha is multiplied in, and says how much of the host's own backdrop is covered.
+    let over =
+        |x: u32, y: u32, channel: u32| light(x, y, channel) + (1.0 - light(x, y, 3)) * BACKDROP[channel as usize];
     let picture = image::RgbImage::from_fn(width, height, |x, y| {
-        image::Rgb([0, 1, 2].map(|channel| (light(x, y, channel).clamp(0.0, 1.0).powf(1.0 / 2.2) * 255.0) as u8))
+        image::Rgb([0, 1, 2].map(|channel| (over(x, y, channel).clamp(0.0, 1.0).powf(1.0 / 2.2) * 255.0) as u8))
     });
     picture.save(file)?;
     Ok(())
