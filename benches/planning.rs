@@ -7,6 +7,7 @@
 #![allow(clippy::unwrap_used, reason = "a bench fails by panicking")]
 
 use std::fmt::Write as _;
+use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
 use meniscus::diagnostic::{Sources, Style, render_all};
@@ -135,7 +136,13 @@ fn time(program: &Program, request: &Request) -> (Duration, Option<Duration>, Pl
     (took, spent, plan)
 }
 
-fn main() {
+/// Milliseconds of the processor that a plan of 1,000 passes and 2,000 resources may take.
+const MOST_MS: f64 = 20.0;
+/// How much longer one of ten times the passes may take.
+const MOST_GROWTH: f64 = 25.0;
+
+fn main() -> ExitCode {
+    let mut is_within = true;
     // `cargo test --benches` only asks whether it runs.
     let sizes: &[usize] = if std::env::args().any(|a| a == "--bench") { &[250, 1000, 4000, 10_000] } else { &[50] };
     println!("{:<9} {:>7} {:>10} {:>7} {:>10} {:>10}", "shape", "passes", "resources", "live", "ms", "CPU ms");
@@ -144,6 +151,7 @@ fn main() {
     // `cargo bench --bench planning -- fan` measures one shape alone.
     let chosen: Vec<String> = std::env::args().skip(1).filter(|a| !a.starts_with('-')).collect();
     for (name, graph) in shapes.into_iter().filter(|(name, _)| chosen.is_empty() || chosen.iter().any(|c| c == name)) {
+        let mut of_thousand_ms = None;
         for n in sizes.iter().copied() {
             let program = load(&graph(n));
             let outputs = program.root.outputs.iter().map(|output| output.name.value.clone()).collect();
@@ -151,6 +159,23 @@ fn main() {
             let (ms, live) = (took.as_secs_f64() * 1e3, plan.passes.len());
             let cpu = spent.map_or_else(|| "-".to_owned(), |spent| format!("{:.2}", spent.as_secs_f64() * 1e3));
             println!("{name:<9} {n:>7} {:>10} {live:>7} {ms:>10.2} {cpu:>10}", 2 * n);
+            let spent_ms = spent.map_or(ms, |spent| spent.as_secs_f64() * 1e3);
+            match (n, of_thousand_ms) {
+                (1000, _) => {
+                    of_thousand_ms = Some(spent_ms);
+                    is_within &= spent_ms <= MOST_MS;
+                }
+                (10_000, Some(thousand_ms)) => {
+                    println!("{:<9} ten times the passes take {:.1} times as long", "", spent_ms / thousand_ms);
+                    is_within &= spent_ms / thousand_ms <= MOST_GROWTH;
+                }
+                _ => {}
+            }
         }
     }
+    if is_within {
+        return ExitCode::SUCCESS;
+    }
+    eprintln!("a plan takes longer than {MOST_MS} ms for 1,000 passes, or {MOST_GROWTH} times that for 10,000");
+    ExitCode::FAILURE
 }
