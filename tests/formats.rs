@@ -12,6 +12,8 @@ mod oracle;
 mod pictures;
 #[path = "formats/shared.rs"]
 mod shared;
+#[path = "formats/sums.rs"]
+mod sums;
 #[path = "formats/writers.rs"]
 mod writers;
 #[path = "formats/wrong.rs"]
