@@ -262,25 +262,45 @@ impl<'e> Shipped<'e> {
 
     /// Holds every output of the runner that skips against that of the one that runs all.
     fn same(&mut self) -> Result<(), String> {
-        let (skips, full) = (self.skips.as_ref().unwrap(), self.full.as_ref().unwrap());
-        let plan = full.plan();
+        let plan = self.full.as_ref().unwrap().plan();
         let unordered: Vec<ObjectId> = (plan.passes.iter().filter(|p| p.unordered))
             .flat_map(|p| p.accesses.iter().filter(|a| a.write).flat_map(|a| objects(plan, a.object)))
             .collect();
-        assert!(!plan.outputs.is_empty());
-        for output in &plan.outputs {
-            if objects(plan, output.object).iter().any(|id| unordered.contains(id)) {
-                let [a, b] = [skips, full].map(|runner| texels(self.engine, runner, output.object));
-                alike(&a, &b).map_err(|what| format!("`{}` {what}", output.name))?;
+        let is_ordered = |object: &ObjectRef| !objects(plan, *object).iter().any(|id| unordered.contains(id));
+        let outputs: Vec<_> = plan.outputs.iter().map(|o| (o.name.clone(), o.object, is_ordered(&o.object))).collect();
+        assert!(!outputs.is_empty());
+        for (name, object, is_ordered) in outputs {
+            let both = [self.skips.as_ref().unwrap(), self.full.as_ref().unwrap()];
+            if is_ordered {
+                let [a, b] = both.map(|runner| read(self.engine, runner, object));
+                let differ = a.iter().zip(&b).filter(|(a, b)| a != b).count();
+                if a != b {
+                    return Err(format!("`{name}` differs in {differ} of {} bytes", a.len()));
+                }
                 continue;
             }
-            let [a, b] = [skips, full].map(|runner| read(self.engine, runner, output.object));
-            let differ = a.iter().zip(&b).filter(|(a, b)| a != b).count();
-            if a != b {
-                return Err(format!("`{}` differs in {differ} of {} bytes", output.name, a.len()));
+            let [a, b] = both.map(|runner| texels(self.engine, runner, object));
+            if let Err(what) = alike(&a, &b) {
+                // What may look like a fault may be the order of atomics at its worst: then full runs differ as much.
+                let (mean, share) = apart(&a, &b);
+                let noise = self.noise(object, &b);
+                if mean > 2.0 * noise.0 || share > 2.0 * noise.1 {
+                    return Err(format!("`{name}` {what}; full runs of the frame by {noise:?}"));
+                }
+                println!("{}: `{name}` {what}; full runs of the frame by {noise:?}", self.name);
             }
         }
         Ok(())
+    }
+
+    /// By how much an output of further full runs of a frame differs from that of the first, at the most.
+    fn noise(&mut self, object: ObjectRef, first: &[[f32; 4]]) -> (f64, f64) {
+        self.steps = 0;
+        (0..5).fold((0.0, 0.0), |most: (f64, f64), _| {
+            self.run(true);
+            let (mean, share) = apart(&texels(self.engine, self.full.as_ref().unwrap(), object), first);
+            (most.0.max(mean), most.1.max(share))
+        })
     }
 }
 
