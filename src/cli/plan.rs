@@ -85,7 +85,7 @@ fn of_graph(args: &PlanArgs, sources: &mut Sources) -> Result<(Plan, Diagnostics
     }
     match plan::instantiate_stand_in(&program, &request) {
         Ok(plan) => {
-            found.extend(plan.warnings.clone());
+            found.extend(of_this_plan(&plan));
             Ok((plan, found))
         }
         Err(errors) => {
@@ -93,6 +93,11 @@ fn of_graph(args: &PlanArgs, sources: &mut Sources) -> Result<(Plan, Diagnostics
             Err(found)
         }
     }
+}
+
+/// What one plan does not use may be used by another, at other parameters: `check` compares them.
+fn of_this_plan(plan: &Plan) -> Diagnostics {
+    Diagnostics(plan.warnings.iter().filter(|warning| warning.id != Code::UNUSED).cloned().collect())
 }
 
 /// The plan of a scene's graph, for what the scene has.
@@ -104,6 +109,6 @@ fn of_scene(args: &PlanArgs, sources: &mut Sources) -> Result<(Plan, Diagnostics
     let Some(content) = loaded.content else { return Err(found) };
     let stand_in = check::stand_in(&content.program);
     let (plan, _) = content.plans(stand_in.features, stand_in.limits, &BTreeMap::new())?;
-    found.extend(plan.warnings.clone());
+    found.extend(of_this_plan(&plan));
     Ok((plan, found))
 }

@@ -167,3 +167,25 @@ fn steps_are_measured_as_they_run() {
     // The step, the picture, and what shows it.
     assert_eq!(json["counters"]["passes"], 3, "{}", json["counters"]);
 }
+
+#[test]
+fn what_was_another_way_is_said() {
+    if !has_adapter() {
+        return;
+    }
+    let project = scenes();
+    let (_, before) = json(&project, &["scenes/light.ron"]);
+    project.write("before.json", before.to_string());
+    let cautions = |args: &[&str]| {
+        let (_, json) = json(&project, &[&["scenes/light.ron", "--compare", "before.json"], args].concat());
+        json["comparison"]["cautions"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .map(|c| c.as_str().unwrap().to_owned())
+            .collect::<Vec<_>>()
+    };
+    assert!(cautions(&[]).is_empty());
+    let said = cautions(&["--set", "times=5", "--policy", "share"]);
+    assert_eq!(said, ["it held memory by the policy `keep`", "its `times` was 3"]);
+}

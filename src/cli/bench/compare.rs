@@ -32,6 +32,9 @@ pub(super) struct Comparison {
     rows: Vec<Row>,
 }
 
+/// Parameters of other values that are named.
+const MOST_PARAMS: usize = 5;
+
 #[derive(Clone, Debug, PartialEq)]
 struct Row {
     what: &'static str,
@@ -84,7 +87,7 @@ impl Comparison {
             };
             Row { what, before_ms: quantile(a, 0.5), now_ms: quantile(b, 0.5), ratio, verdict }
         };
-        let mut caution = Vec::new();
+        let mut caution = otherwise_done(before, now, is_paired);
         if before.adapter != now.adapter {
             caution.push(format!("it was measured on {}", before.adapter));
         }
@@ -148,6 +151,26 @@ impl Comparison {
             "rows": self.rows.iter().map(row).collect::<Vec<_>>(),
         })
     }
+}
+
+/// What else was another way before, as far as that was noted. Of scenes that take turns, that is what is compared.
+fn otherwise_done(before: &Measured, now: &Measured, is_paired: bool) -> Vec<String> {
+    let mut said = Vec::new();
+    if before.memory.policy != now.memory.policy && !before.memory.policy.is_empty() {
+        said.push(format!("it held memory by the policy `{}`", before.memory.policy));
+    }
+    if is_paired || before.graph.is_empty() {
+        return said;
+    }
+    if before.graph != now.graph {
+        said.push(format!("it was drawn by {}", before.graph));
+    }
+    let others = now.params.iter().filter_map(|(path, value)| {
+        let was = before.params.get(path).filter(|was| *was != value)?;
+        Some(format!("its `{path}` was {was}"))
+    });
+    said.extend(others.take(MOST_PARAMS));
+    said
 }
 
 /// The ratio of the typical frames with the bounds of 95 %: low, middle, high.

@@ -46,6 +46,9 @@ pub fn run(args: &BenchArgs) -> Exit {
 pub(super) struct Measured {
     pub scene: String,
     pub adapter: String,
+    pub graph: String,
+    /// Values of all parameters, as text by their instance paths.
+    pub params: BTreeMap<String, String>,
     pub size: [u32; 2],
     pub frames: u32,
     /// In the order of the first frame.
@@ -157,6 +160,8 @@ impl Subject {
         }
         self.measured.adapter = session.gpu().info().name;
         if let Some(plan) = session.plan() {
+            self.measured.graph = plan.graph.display().to_string();
+            self.measured.params = plan.params.iter().map(|p| (p.path.clone(), p.value.to_string())).collect();
             self.measured.memory.policy = plan.memory.policy.name().into();
             self.measured.memory.unshared_bytes = plan.memory.unshared;
             self.measured.memory.lower_bound_bytes = plan.memory.lower_bound;

@@ -6,7 +6,7 @@ use std::path::Path;
 use serde_json::{Value, json};
 
 use super::compare::Comparison;
-use super::{Measured, PassTimes, quantile};
+use super::{Measured, Memory, PassTimes, quantile};
 use crate::diagnostic::{Code, Diagnostic};
 
 /// Changes when a field is renamed or gone, not when one is added.
@@ -22,6 +22,8 @@ pub(super) fn json(m: &Measured, comparison: Option<&Comparison>) -> Value {
         "version": VERSION,
         "scene": m.scene,
         "adapter": m.adapter,
+        "graph": m.graph,
+        "params": m.params,
         "size": m.size,
         "frames": m.frames,
         "passes": m.passes.iter().map(pass).collect::<Vec<_>>(),
@@ -74,7 +76,13 @@ pub(super) fn read(path: &Path) -> Result<Measured, Diagnostic> {
     };
     let text = |what: &str| value[what].as_str().unwrap_or_default().to_owned();
     let size = |i: usize| value["size"][i].as_u64().and_then(|n| u32::try_from(n).ok()).unwrap_or(0);
+    let params = value["params"].as_object().into_iter().flatten();
+    let params = params.filter_map(|(path, value)| Some((path.clone(), value.as_str()?.to_owned()))).collect();
+    let policy = value["memory"]["policy"].as_str().unwrap_or_default().to_owned();
     Ok(Measured {
+        graph: text("graph"),
+        params,
+        memory: Memory { policy, ..Memory::default() },
         scene: text("scene"),
         adapter: text("adapter"),
         size: [size(0), size(1)],
