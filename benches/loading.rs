@@ -18,7 +18,7 @@ use std::time::{Duration, Instant};
 use meniscus::diagnostic::Diagnostics;
 use meniscus::engine::{Gpu, GpuOptions};
 use meniscus::files::{DiskFiles, Files as _};
-use meniscus::host::sequence::Track;
+use meniscus::host::sequence::{Frames, Track};
 use meniscus::host::{Player, When};
 use meniscus::scene::sequence::Pattern;
 use meniscus::scene::{convert, particles};
@@ -89,15 +89,13 @@ fn play(folder: &Path, count: usize) {
         let path = pattern.path(0);
         black_box(particles::read(&path, &DiskFiles.read(&path).unwrap()).unwrap());
     });
-    let (input, frames) = ("particles".to_owned(), 0..=FRAMES - 1);
     let track = Track {
-        input,
-        pattern: pattern.clone(),
-        frames,
-        rate: 25.0,
+        input: "particles".to_owned(),
+        frames: Frames::leading(pattern.clone(), 0..=FRAMES - 1, 25.0),
         taken: particles::Taken::default(),
         radius_m: 0.01,
         bounds: None,
+        none: None,
     };
     let mut player = Player::new(&[track], When::Frame(0), DiskFiles);
     let (began, mut longest_ms) = (Instant::now(), 0.0_f64);

@@ -407,7 +407,23 @@ fn numbered_files_are_frames() {
     ] {
         assert!(run.stderr.contains(words), "{}", run.stderr);
     }
+    assert_eq!(run.stderr.matches("frame 8 is beyond 2 to 7: 7 is shown").count(), 1, "{}", run.stderr);
     let picture = |name: &str| std::fs::read(project.path(name)).unwrap();
+    for (more, words) in [
+        (["--frame", "9999"], "warning[asset-note]: `row_###.csv`: frame 9999 is beyond 2 to 7: 7 is shown"),
+        (["--frame", "0"], "warning[asset-note]: `row_###.csv`: frame 0 is before 2 to 7: 2 is shown"),
+    ] {
+        let run = good(project.run(&[&args[..], &["-o", "one.png"], &more].concat()));
+        assert_eq!(run.stderr.matches(words).count(), 1, "{}", run.stderr);
+    }
+    assert_eq!(picture("one.png"), picture("f_02.png"));
+    // By time the last one stays, as the scene's end is no frame's number.
+    let run = good(project.run(&[&args[..], &["-o", "one.png", "--time", "60"]].concat()));
+    assert!(!run.stderr.contains("beyond"), "{}", run.stderr);
+    assert_eq!(picture("one.png"), picture("f_07.png"));
+    // Each of several goes on beyond the last, which is told once.
+    let run = good(project.run(&[&args[..], &["-o", "g_##.png", "--frames", "7..10"]].concat()));
+    assert_eq!(run.stderr.matches("is beyond 2 to 7").count(), 1, "{}", run.stderr);
     // A frame by itself is what it is amid others, and not what another is.
     for (frame, like) in [("2", "f_02.png"), ("5", "f_05.png"), ("4", "f_03.png"), ("8", "f_07.png"), ("7", "f_07.png")]
     {

@@ -48,6 +48,11 @@ impl Particles {
         };
         Self::new(Arc::new(set), RADIUS_OF_NONE_M, None)
     }
+
+    /// What shows before a set does: none, with its attributes.
+    pub(super) fn before(set: &ParticleSet, radius_m: f64, bounds: Option<[[f32; 3]; 2]>) -> Self {
+        Self::new(Arc::new(set.emptied()), radius_m, bounds)
+    }
 }
 
 /// Nothing has this radius; sizes that are made of it must not be zero.

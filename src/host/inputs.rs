@@ -1,7 +1,6 @@
 //! Feeding a graph's inputs from a scene's items of the same names.
 
 use std::collections::BTreeMap;
-use std::ops::RangeInclusive;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -12,7 +11,7 @@ use wgpu_types::TextureUsages;
 use super::assets::{Asset, Cache, Particles, Pending, radius_m};
 use super::meshes::Meshes;
 use super::models::{MeshFiles, Reading};
-use super::sequence::Track;
+use super::sequence::{Frames, Track};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics, Span};
 use crate::format::TextureFormat;
 use crate::graph::model::{Graph, Input as Declared, InputDefault, InputKind};
@@ -21,7 +20,6 @@ use crate::graph::value::Value;
 use crate::plan::model::{InputInfo, Texture};
 use crate::scene::image::Image;
 use crate::scene::particles::Taken;
-use crate::scene::sequence::Pattern;
 use crate::scene::{Light, PointerPath, Scene, find};
 
 /// What feeds an input.
@@ -51,14 +49,8 @@ pub(super) struct ParticleFile {
     pub bounds: Option<[[f32; 3]; 2]>,
     /// The sequence that the file is a frame of.
     pub sequence: Option<Frames>,
-}
-
-/// A sequence before its input and its radius are known.
-#[derive(Debug)]
-pub(super) struct Frames {
-    pub pattern: Pattern,
-    pub frames: RangeInclusive<u64>,
-    pub rate: f64,
+    /// The sequence begins later: nothing shows yet, and this is its first file.
+    pub is_early: bool,
 }
 
 /// Everything that a scene and the command line offer, files perhaps still being decoded.
@@ -97,7 +89,7 @@ impl Offer {
     pub fn decode(self, graph: Option<&Graph>, cache: &mut Cache, diagnostics: &mut Diagnostics) -> Decoded {
         let mut decoded = Decoded::default();
         for file in self.particles {
-            let ParticleFile { name, path, pending, radius_m: said, taken, bounds, sequence } = file;
+            let ParticleFile { name, path, pending, radius_m: said, taken, bounds, sequence, is_early } = file;
             let name = name.map_or_else(|| only_particles(graph), Ok);
             let asset = pending.and_then(|pending| cache.finish(pending, diagnostics));
             let name = match name {
@@ -113,16 +105,22 @@ impl Offer {
             };
             match radius_m(&path, &set, estimated, said, diagnostics) {
                 Ok(radius_m) => {
-                    decoded.tracks.extend(sequence.map(|Frames { pattern, frames, rate }| Track {
-                        input: name.clone(),
-                        pattern,
+                    let is_late = sequence.as_ref().is_some_and(Frames::is_late);
+                    let none = is_late.then(|| Arc::new(Particles::before(&set, radius_m, bounds)));
+                    let shown = match &none {
+                        Some(none) if is_early => Arc::clone(none),
+                        _ => cache.sized(&path, set, radius_m, bounds),
+                    };
+                    let input = name.clone();
+                    decoded.tracks.extend(sequence.map(|frames| Track {
+                        input,
                         frames,
-                        rate,
                         taken,
                         radius_m,
                         bounds,
+                        none,
                     }));
-                    decoded.particles.insert(name, cache.sized(&path, set, radius_m, bounds));
+                    decoded.particles.insert(name, shown);
                 }
                 Err(error) => {
                     diagnostics.push(error);

@@ -201,7 +201,7 @@ impl Loader<'_> {
     /// What is asked of memory, with the inputs that each picture has others of.
     fn memory(&self, tracks: &[Track], inputs: &BTreeMap<String, Input>) -> MemoryRequest {
         let moving = |(name, input): &(&String, &Input)| {
-            let is_played = tracks.iter().any(|t| t.input == **name && t.frames.start() < t.frames.end());
+            let is_played = tracks.iter().any(|t| t.input == **name && t.frames.moves());
             is_played || matches!(input, Input::Meshes(meshes) if meshes.info.animated)
         };
         let moving = inputs.iter().filter(|_| self.job.plays).filter(moving).map(|(name, _)| name.clone()).collect();

@@ -55,6 +55,11 @@ impl Pattern {
         (number.len() == self.digits || !number.starts_with('0')).then_some(frame)
     }
 
+    /// The file's name, with a run of `#` for the number.
+    pub fn name(&self) -> String {
+        format!("{}{}{}", self.before, "#".repeat(self.digits), self.after)
+    }
+
     /// The same pattern in another folder.
     #[must_use]
     pub fn in_folder(&self, folder: PathBuf) -> Self {

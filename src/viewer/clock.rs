@@ -49,9 +49,9 @@ impl Beat {
     /// That of a scene's first sequence, if it has any.
     pub fn of(track: Option<&Track>) -> Self {
         track.map_or_else(Self::default, |track| Self {
-            rate: track.rate,
-            first: *track.frames.start(),
-            last: Some(*track.frames.end()),
+            rate: track.frames.rate,
+            first: track.frames.first(),
+            last: Some(track.frames.last()),
         })
     }
 

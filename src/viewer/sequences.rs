@@ -59,8 +59,8 @@ impl Sequences {
     /// The files that are shown, and those that would come behind the last ones: a solver may be at work.
     pub fn files(&self) -> Vec<PathBuf> {
         let both = |track: &Track| {
-            let shown = self.shown.frame(&track.frames, track.rate);
-            [shown, track.frames.end().saturating_add(1)].map(|frame| track.pattern.path(frame))
+            let shown = track.frames.number(self.shown);
+            [shown, track.frames.last().saturating_add(1)].map(|frame| track.frames.pattern.path(frame))
         };
         self.tracks.iter().flat_map(both).collect()
     }

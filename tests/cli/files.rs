@@ -127,6 +127,89 @@ fn another_graph_leaves_out_what_the_scene_says_for_its_own() {
     );
 }
 
+const COUNTS: &str = "struct Counts { particles_count: u32, foam_count: u32, foam_radius: f32 }\n\
+    var<uniform> told: Counts;\n\
+    var<storage, read_write> sum: array<f32>;\n\
+    var<storage, read> foam_mass: array<f32>;\n\
+    @compute @workgroup_size(1) fn main() {\n\
+    sum[0] = f32(told.particles_count);\n sum[1] = f32(told.foam_count);\n sum[2] = foam_mass[0];\n\
+    sum[3] = told.foam_radius;\n }";
+
+/// Liquid in frames 0 to 3, foam in frames 2 and 3: frame n has n + 1 particles.
+fn liquid_and_foam() -> Project {
+    let declarations = "inputs: {\"particles\": Particles(attributes: [\"position\"]), \
+        \"foam\": Particles(attributes: [\"position\", \"mass\"])}, resources: {PICTURE, \"sum\": Buffer(items: 4)},";
+    let passes = "Compute(shader: \"sum.wgsl\", groups: 1),";
+    let project = project_of(passes, declarations, &[("sum", COUNTS), ("show", SHOW_SUM)]);
+    let rows = |n: u32| (0..=n).map(|i| format!("{i},0,0,{n}.5\n")).collect::<String>();
+    for n in 0..4 {
+        project.write(&format!("liquid_{n}.csv"), format!("x,y,z,mass\n{}", rows(n)));
+    }
+    for n in 2..4 {
+        project.write(&format!("foam_{n}.csv"), format!("x,y,z,mass\n{}", rows(n)));
+    }
+    project
+}
+
+#[test]
+fn foam_that_begins_later_is_empty_until_then() {
+    if !has_adapter() {
+        return;
+    }
+    let project = liquid_and_foam();
+    let scene = |frames: &str, liquid: &str| {
+        let foam = format!("\"foam\": (file: \"../foam_#.csv\"{frames})");
+        let liquid = format!("\"particles\": (file: \"../{liquid}\", radius: 0.1)");
+        project.write(
+            "scenes/it.ron",
+            format!("Scene(graph: \"it.ron\", size: (16, 8), particles: {{{liquid}, {foam}}})"),
+        );
+    };
+    let counts = |more: &[&str]| {
+        let render = ["render", "scenes/it.ron", "-o", "a_#.png", "--dump", "sum=s.csv"];
+        let run = good(project.run(&[&render[..], more].concat()));
+        let text = project.text("s.csv");
+        let numbers: Vec<f32> = text.lines().skip(1).take(3).map(|line| line.parse().unwrap()).collect();
+        let radius: f32 = text.lines().nth(4).unwrap().parse().unwrap();
+        assert!((radius - 0.5).abs() < 0.01, "that of the first file, also before it: {text}");
+        (numbers, run.stderr)
+    };
+    let begins = "note[asset-note]: `../foam_#.csv` begins with frame 2: until then it is empty";
+    for frames in ["", ", frames: (0, 3)", ", frames: (2, 3)"] {
+        scene(frames, "liquid_#.csv");
+        // At 25 frames a second.
+        for (frame, time, expected) in [("0", "0", [1.0, 0.0]), ("1", "0.04", [2.0, 0.0]), ("2", "0.08", [3.0, 3.0])] {
+            for when in [["--frame", frame], ["--time", time]] {
+                let (found, said) = counts(&when);
+                assert_eq!(found[..2], expected, "{frames} {when:?}");
+                assert_eq!(said.matches(begins).count(), usize::from(frame != "2"), "{said}");
+            }
+        }
+        // From none to some while it plays.
+        let (found, said) = counts(&["--frames", "0..3"]);
+        assert_eq!(found, [4.0, 4.0, 3.5], "{frames}");
+        assert_eq!(said.matches(begins).count(), 1, "{said}");
+    }
+    // What stands in the place of the liquid makes the scene's numbers as that did.
+    scene("", "gone_#.csv");
+    assert_eq!(
+        counts(&["--particles", "particles=liquid_#.csv", "--radius", "0.5", "--frame", "1"]).0[..2],
+        [2.0, 0.0]
+    );
+    // Foam that ends sooner stays, and that is told.
+    std::fs::remove_file(project.path("foam_3.csv")).unwrap();
+    scene("", "liquid_#.csv");
+    let held = "`foam_#.csv`: frame 3 is beyond 2 to 2: 2 is shown";
+    for when in [["--frame", "3"], ["--frames", "1..3"], ["--time", "0.12"]] {
+        let (found, said) = counts(&when);
+        assert_eq!(found, [4.0, 3.0, 2.5], "{when:?}");
+        assert_eq!(said.matches(held).count(), 1, "{said}");
+    }
+    assert!(!counts(&["--time", "9"]).1.contains("beyond"), "the scene's end");
+    // One for the liquid and one for the foam.
+    assert_eq!(counts(&["--frame", "9"]).1.matches("frame 9 is beyond").count(), 2);
+}
+
 const SUM: &str = "var<storage, read_write> sum: array<f32>;\n\
     var<storage, read> particles_mass: array<f32>;\n\
     @compute @workgroup_size(1) fn main() { sum[0] += particles_mass[0]; }";

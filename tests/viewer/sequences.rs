@@ -96,6 +96,43 @@ fn what_is_missing_or_damaged_is_told_and_mended() {
 }
 
 #[test]
+fn a_second_sequence_keeps_to_the_numbers_of_the_first() {
+    if !has_adapter() {
+        return;
+    }
+    let project = project();
+    for frame in [5, 7] {
+        project.write(&format!("scenes/assets/foam_{frame:02}.csv"), csv(frame));
+    }
+    let graph = project.text("graphs/dots.ron");
+    let taken = "\"particles\": Particles(attributes: [\"position\"])";
+    assert!(graph.contains(taken), "{graph}");
+    project.edit("graphs/dots.ron", taken, &format!("{taken}, \"foam\": Particles(attributes: [\"position\"])"));
+    // The first that the scene names is the one that counts.
+    project.edit(
+        SCENE,
+        "radius: 0.02)",
+        "radius: 0.02), \"foam\": (file: \"assets/foam_##.csv\", radius: 0.1, rate: 20.0)",
+    );
+    let mut desk = Desk::of(project);
+    desk.rest();
+    assert_eq!((desk.core.state.clock.beat.first, desk.core.state.clock.beat.last), (3, Some(12)));
+    let both = |desk: &Desk| {
+        let counts = desk.core.particles();
+        let of = |name: &str| counts.iter().find(|(known, _)| *known == name).map(|(_, count)| *count);
+        (of("particles"), of("foam"))
+    };
+    assert_eq!(both(&desk), (Some(3), Some(0)));
+    for (frame, foam) in [(4, 0), (5, 5), (7, 7), (12, 7), (3, 0)] {
+        go_to(&mut desk, frame);
+        assert_eq!(both(&desk), (Some(frame as usize), Some(foam)), "frame {frame}");
+    }
+    let told = desk.core.state.findings.iter().flat_map(|f| f.diagnostics.iter()).map(|d| d.message.clone());
+    let told: Vec<String> = told.filter(|message| message.contains("foam_##.csv")).collect();
+    assert_eq!(told.len(), 2, "that it begins later, and that it ends sooner: {told:?}");
+}
+
+#[test]
 fn it_plays_at_the_rate_of_the_files_and_leaves_none_out() {
     if !has_adapter() {
         return;

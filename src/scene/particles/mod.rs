@@ -90,6 +90,24 @@ impl ParticleSet {
         self.attributes.iter().find(|a| a.name == name)
     }
 
+    /// A set with the same attributes and no particles.
+    pub fn emptied(&self) -> Self {
+        let empty = |Attribute { name, components, values }: &Attribute| Attribute {
+            name: name.clone(),
+            components: *components,
+            values: Values::empty(values.kind()),
+        };
+        Self {
+            attributes: self.attributes.iter().map(empty).collect(),
+            count: 0,
+            dropped: 0,
+            radius: self.radius,
+            min: [0.0; 3],
+            max: [0.0; 3],
+            notes: Vec::new(),
+        }
+    }
+
     /// The positions in metres, as `f32`.
     pub fn positions(&self) -> Cow<'_, [[f32; 3]]> {
         self.attributes.first().map(|a| finish::triples(&a.values)).unwrap_or_default()
