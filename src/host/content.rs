@@ -6,6 +6,7 @@ use wgpu_types::{Features, Limits};
 
 use super::inputs::Input;
 use super::sequence::Track;
+use super::viewpoint::Viewpoint;
 use crate::graph::value::Value;
 use crate::plan::model::{InputInfo, MemoryRequest, Request, Texture};
 use crate::program::Program;
@@ -23,6 +24,8 @@ pub struct Content {
     /// What feeds the presenting graph, besides the picture.
     pub present_inputs: BTreeMap<String, Input>,
     pub camera: Camera,
+    /// What the camera is of a file's, and moves with; none if somebody said it otherwise.
+    pub viewpoint: Option<Viewpoint>,
     /// Pixels.
     pub viewport: [u32; 2],
     pub params: BTreeMap<String, Value>,

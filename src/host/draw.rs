@@ -119,7 +119,11 @@ impl Session {
 
     /// Runs the graph for one moment, with so many of each of its `Steps`.
     fn run_moment(&mut self, now: Moment, steps: &[u32]) -> Result<(), Diagnostics> {
-        let (Some(content), Some(runner)) = (&self.content, &mut self.graph) else { return Err(nothing().into()) };
+        let (Some(content), Some(runner)) = (&mut self.content, &mut self.graph) else { return Err(nothing().into()) };
+        if let Some(camera) = content.viewpoint.as_ref().and_then(|viewpoint| viewpoint.at(now.time_s)) {
+            content.camera = camera;
+        }
+        let content = &*content;
         let live = LiveValues::new(content, &content.inputs, &self.pointed, now.time_s);
         let frame = Frame {
             time: now.time_s,

@@ -14,6 +14,7 @@ use super::inputs::{self, Input, Offer};
 use super::params::{self, Given, Raw};
 use super::sequence::{Track, When};
 use super::source::{self, Brings};
+use super::viewpoint::Viewpoint;
 use crate::diagnostic::{Code, Diagnostic, Diagnostics, Sources};
 use crate::files::{self, Files, Kind};
 use crate::graph::value::Value;
@@ -129,7 +130,8 @@ impl Loader<'_> {
         self.add_given(&mut scene);
         // Files decode on other threads while the graphs are read.
         let (particles, images) = (self.particles(&scene, source.brings == Brings::Particles), self.images(&scene));
-        let (meshes, models) = self.meshes(&scene);
+        let (meshes, mut models) = self.meshes(&scene);
+        let camera_file = self.camera_file(&scene, &mut models);
         let offer = Offer { particles, images, meshes, models };
         let program = self.graph(&scene);
         let present = self.program(PRESENT, Some(&scene.path));
@@ -139,7 +141,8 @@ impl Loader<'_> {
         let mut inputs = inputs::connect(&program.root, &scene, &decoded, &mut self.diagnostics);
         let (own, shared) = self.params(&scene, &program, &present);
         let viewport = self.job.size.or(scene.size).unwrap_or(DEFAULT_SIZE);
-        let camera = self.camera(&scene, &inputs, viewport)?;
+        let viewpoint = self.viewpoint(&scene, camera_file);
+        let camera = self.camera(&scene, viewpoint.as_ref(), &inputs, viewport)?;
         if let Some(at) = self.job.pointer {
             let held = PointerPath::held(camera.eye, DVec3::from_array(at) - camera.eye);
             let pointers = inputs.values_mut().filter(|input| matches!(input, Input::Pointer(_)));
@@ -159,6 +162,7 @@ impl Loader<'_> {
             inputs,
             present_inputs,
             camera,
+            viewpoint: viewpoint.filter(|_| self.job.eye.is_none() && self.job.target.is_none()),
             viewport,
             params,
             present_params,
@@ -288,11 +292,27 @@ impl Loader<'_> {
         (own, params::resolve(&shared, present, &mut self.diagnostics))
     }
 
+    /// The camera of a file that the scene asks for.
+    fn viewpoint(&mut self, scene: &Scene, path: Option<PathBuf>) -> Option<Viewpoint> {
+        let model = self.cache.models.of(&path?)?;
+        let found = Viewpoint::new(&scene.camera_file.as_ref()?.value, &model);
+        let mut found = found.map_err(|error| self.diagnostics.push(error)).ok()?;
+        found.fov_degrees = self.job.fov_degrees.unwrap_or(found.fov_degrees);
+        Some(found)
+    }
+
     /// The scene's camera, else one that frames the first particles; the command line's terms win.
-    fn camera(&mut self, scene: &Scene, inputs: &BTreeMap<String, Input>, viewport: [u32; 2]) -> Option<Camera> {
+    fn camera(
+        &mut self,
+        scene: &Scene,
+        viewpoint: Option<&Viewpoint>,
+        inputs: &BTreeMap<String, Input>,
+        viewport: [u32; 2],
+    ) -> Option<Camera> {
         let job = self.job;
-        let mut camera = match &scene.camera {
-            Some(camera) => camera.value,
+        let said = scene.camera.as_ref().map(|camera| camera.value);
+        let mut camera = match said.or_else(|| viewpoint?.at(0.0)) {
+            Some(camera) => camera,
             None => {
                 let seen = inputs.values().find_map(|input| match input {
                     Input::Particles(particles) if particles.set.count > 0 => Some(particles),

@@ -19,9 +19,7 @@ use crate::scene::image::Stored;
 use crate::scene::meshes::{AlphaMode, Bounds, FARTHEST_M, Material, Model, Pose, Primitive, is_mirrored};
 use crate::shader::reflect::Type;
 use materials::slots;
-pub(super) use poses::Standing;
-pub(super) use poses::choice;
-use poses::{Entry, animation};
+pub(super) use poses::{Entry, Standing, animation, choice};
 
 /// Bodies ready to be handed to a device.
 #[derive(Debug, Default)]

@@ -23,6 +23,7 @@ pub mod player;
 pub mod sequence;
 mod source;
 mod state;
+mod viewpoint;
 
 pub use crate::engine::Due;
 pub use assets::{Cache, Particles};

@@ -63,6 +63,11 @@ impl Reading {
 }
 
 impl Models {
+    /// The model that was last read of a file.
+    pub fn of(&self, path: &Path) -> Option<Arc<Model>> {
+        self.read.get(path).map(|(_, model)| Arc::clone(model))
+    }
+
     /// Waits for all files and puts together what feeds each name. The names whose files have
     /// errors of their own come second.
     pub fn finish(

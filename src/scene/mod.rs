@@ -19,6 +19,6 @@ pub mod sequence;
 pub mod sun;
 
 pub use camera::{Camera, Light};
-pub use model::{CubeFiles, Item, MeshEntry, ParticleSource, Playing, Scene, find};
+pub use model::{CameraFile, CubeFiles, Item, MeshEntry, ParticleSource, Playing, Scene, find};
 pub use pointer::{PointerPath, Pointing};
 pub use read::{DEFAULT_FOV_DEGREES, read};

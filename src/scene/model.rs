@@ -25,6 +25,8 @@ pub struct Scene {
     pub graph: Option<Sp<String>>,
     /// Absent: the particles are framed.
     pub camera: Option<Sp<Camera>>,
+    /// In its place.
+    pub camera_file: Option<Sp<CameraFile>>,
     pub lights: Vec<Item<Light>>,
     pub pointers: Vec<Item<PointerPath>>,
     pub particles: Vec<Item<ParticleSource>>,
@@ -94,6 +96,15 @@ pub struct MeshEntry {
     /// For graphs that ask for values of bodies.
     pub values: Vec<Item<Value>>,
     pub playing: Playing,
+}
+
+/// A camera of a mesh file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CameraFile {
+    /// Where the file is put, and what moves its nodes; nothing of it is drawn.
+    pub entry: MeshEntry,
+    /// Of the camera or of its node; absent: the first.
+    pub name: Option<Sp<String>>,
 }
 
 /// What moves the nodes of a mesh file over time.

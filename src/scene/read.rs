@@ -1,6 +1,7 @@
 //! Scene files from RON. All mistakes of a file are reported at once; what could be read stands.
 
 mod bodies;
+mod cameras;
 mod environment;
 mod sources;
 
@@ -8,7 +9,7 @@ use std::path::Path;
 
 use glam::DVec3;
 
-use super::camera::{Camera, Light};
+use super::camera::Light;
 use super::model::{Item, Scene};
 use super::pointer::{PointerPath, Pointing};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics, Sources, Span};
@@ -52,13 +53,17 @@ pub fn read(path: &Path, bytes: &[u8], sources: &mut Sources, diagnostics: &mut 
     let mut reader = Reader { decoder: Decoder { diagnostics } };
     let tagged = reader.root(&node)?;
     let fields = reader.decoder.body_fields(tagged, "`Scene`", FIELDS)?;
+    let about = fields.get("about").and_then(|n| reader.decoder.text(n, "`about`")).map(|s| s.value);
+    let graph = fields.get("graph").and_then(|n| reader.file_name(n, "`graph`"));
+    let (camera, camera_file) = cameras::Said::apart(fields.get("camera").and_then(|n| reader.camera(n)));
     let scene = Scene {
         path: path.to_owned(),
         file,
         span: tagged.head,
-        about: fields.get("about").and_then(|n| reader.decoder.text(n, "`about`")).map(|s| s.value),
-        graph: fields.get("graph").and_then(|n| reader.file_name(n, "`graph`")),
-        camera: fields.get("camera").and_then(|n| reader.camera(n)),
+        about,
+        graph,
+        camera,
+        camera_file,
         lights: reader.items(&fields, "lights", Reader::light),
         pointers: reader.items(&fields, "pointers", Reader::pointer),
         particles: reader.items(&fields, "particles", Reader::particles),
@@ -117,31 +122,6 @@ impl Reader<'_> {
             textures.push(Item { name: name.clone(), value: file, span: node.span });
         }
         textures
-    }
-
-    fn camera(&mut self, node: &Node) -> Option<Sp<Camera>> {
-        let fields = self.decoder.fields(node, "`Camera`", &["eye", "target", "up", "fov", "near"])?;
-        self.word(node, "Camera", "`camera`");
-        let eye = fields.require(&mut self.decoder, "eye").and_then(|n| self.decoder.floats::<3>(n, "`eye`"));
-        let target = fields.require(&mut self.decoder, "target").and_then(|n| self.decoder.floats::<3>(n, "`target`"));
-        let up = match fields.get("up") {
-            Some(n) => self.decoder.floats::<3>(n, "`up`"),
-            None => Some(DVec3::Y.to_array()),
-        };
-        let fov_degrees = match fields.get("fov") {
-            Some(n) => self.decoder.float(n, "`fov`"),
-            None => Some(DEFAULT_FOV_DEGREES),
-        };
-        let near_m = fields.get("near").and_then(|n| self.decoder.float(n, "`near`"));
-        let camera = Camera {
-            eye: DVec3::from_array(eye?),
-            target: DVec3::from_array(target?),
-            up: DVec3::from_array(up?),
-            fov_degrees: fov_degrees?,
-            near_m,
-        };
-        self.sound(camera.fault(), fields.head)?;
-        Some(Sp { value: camera, span: fields.head })
     }
 
     fn light(&mut self, node: &Node, what: &str) -> Option<Light> {

@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 mod bad_input;
+mod cameras;
 mod compute;
 mod distance;
 mod draw;
@@ -87,6 +88,9 @@ fn main() -> ExitCode {
         meshes::tags_and_values_and_computed_bodies,
         meshes::absent_meshes_are_no_bodies,
         meshes::materials_are_bound_by_name,
+        cameras::stand_where_their_node_does,
+        cameras::move_as_their_node_does,
+        cameras::that_cannot_be_looked_through_are_told,
         meshes::animations_move_nodes,
         meshes::what_turns_inside_out_on_its_way_stays_seen,
         meshes::what_blends_goes_from_back_to_front,

@@ -10,7 +10,7 @@ use meniscus::host::{Cache, Job, Moment, Session, load};
 
 /// A square from -0.5 to 0.5 that faces +z, as a glTF file; `more` goes into its material, `node`
 /// into its node, `rest` beside them.
-fn square(more: &str, node: &str, rest: &str) -> String {
+pub fn square(more: &str, node: &str, rest: &str) -> String {
     let corners: [[f32; 3]; 4] = [[-0.5, -0.5, 0.0], [0.5, -0.5, 0.0], [0.5, 0.5, 0.0], [-0.5, 0.5, 0.0]];
     let uvs: [[f32; 2]; 4] = [[0.0, 1.0], [1.0, 1.0], [1.0, 0.0], [0.0, 0.0]];
     let indices: [u16; 6] = [0, 1, 2, 0, 2, 3];

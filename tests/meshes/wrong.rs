@@ -218,6 +218,15 @@ fn nodes(sheet: &mut Sheet) {
         b.document["nodes"] = (0..1000).map(|_| json!({"mesh": 0})).collect();
         b.document["meshes"][0]["primitives"] = (0..1000).map(|_| json!({"attributes": {"POSITION": 0}})).collect();
     });
+    sheet.changed("cameras that are none", |b| {
+        b.push("cameras", json!({"name": "eye", "type": "perspective", "perspective": {"yfov": -3, "znear": 0.1}}));
+        b.push("cameras", json!({"type": "perspective"}));
+        b.push(
+            "cameras",
+            json!({"type": "orthographic", "orthographic": {"xmag": 0, "ymag": 1, "znear": 0, "zfar": 1}}),
+        );
+        b.push("cameras", json!({"type": "perspective", "perspective": {"yfov": 1, "znear": 0.1, "zfar": 0.1}}));
+    });
     let lamps = |b: &mut Builder| {
         let on = json!({"KHR_lights_punctual": {"light": 0}});
         b.document["extensions"] = json!({"KHR_lights_punctual": {"lights": [{"type": "point"}]}});

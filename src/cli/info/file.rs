@@ -175,10 +175,11 @@ fn of_model(model: &Model) -> Told {
     for animation in &model.animations {
         _ = writeln!(text, "  animation: `{}`, {} s", animation.name, animation.duration_s);
     }
-    for (count, what) in [(model.cameras.len(), "cameras"), (model.lights.len(), "lights")] {
-        if count > 0 {
-            _ = writeln!(text, "  {what}: {count}");
-        }
+    let seen = |node: &meshes::Node| Some((node.name.clone(), model.cameras.get(node.camera?)?.name.clone()));
+    let seen = model.nodes.iter().filter_map(seen).map(|(node, lens)| if node.is_empty() { lens } else { node });
+    seen.for_each(|name| _ = writeln!(text, "  camera: `{name}`"));
+    if !model.lights.is_empty() {
+        _ = writeln!(text, "  lights: {}", model.lights.len());
     }
     let animations = model.animations.iter().map(|a| json!({"name": a.name, "seconds": a.duration_s}));
     let json = json!({

@@ -41,7 +41,9 @@ fn of_scene(scene: &Scene) -> Told {
         _ = writeln!(text, "    {:width$}  {kind:9}  {}", name.value, files.join(", "));
         items.push(json!({"name": name.value, "kind": kind, "files": files}));
     }
-    if scene.camera.is_none() {
+    let camera = scene.camera_file.as_ref().map(|camera| camera.value.entry.file.value.clone());
+    camera.iter().for_each(|file| _ = writeln!(text, "  camera: of {file}"));
+    if scene.camera.is_none() && camera.is_none() {
         text.push_str("  no camera: the particles, or the meshes, are framed\n");
     }
     for param in &scene.params {

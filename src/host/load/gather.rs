@@ -170,16 +170,31 @@ impl Loader<'_> {
             for entry in &item.value {
                 let (path, bytes) = self.asset(&entry.file.value, &scene.path, entry.file.span);
                 let is_there = bytes.is_some();
-                if let Some(bytes) = bytes.filter(|_| !reading.has(&path)) {
-                    let bundle = scene::meshes::gather(self.files, &path, bytes);
-                    self.read.extend(bundle.looked_at.iter().cloned());
-                    reading.begin(&self.cache.models, bundle, entry.file.span);
+                if let Some(bytes) = bytes {
+                    self.begin_mesh(&path, bytes, entry.file.span, &mut reading);
                 }
                 paths.push(is_there.then_some(path));
             }
             all.push(MeshFiles { name: item.name.value.clone(), entries: item.value.clone(), paths });
         }
         (all, reading)
+    }
+
+    /// The file of the scene's camera, being read.
+    pub(super) fn camera_file(&mut self, scene: &Scene, reading: &mut Reading) -> Option<PathBuf> {
+        let file = &scene.camera_file.as_ref()?.value.entry.file;
+        let (path, bytes) = self.asset(&file.value, &scene.path, file.span);
+        self.begin_mesh(&path, bytes?, file.span, reading);
+        Some(path)
+    }
+
+    /// Begins to read a mesh file, once.
+    fn begin_mesh(&mut self, path: &Path, bytes: Arc<[u8]>, at: Span, reading: &mut Reading) {
+        if !reading.has(path) {
+            let bundle = scene::meshes::gather(self.files, path, bytes);
+            self.read.extend(bundle.looked_at.iter().cloned());
+            reading.begin(&self.cache.models, bundle, at);
+        }
     }
 
     fn image(&mut self, file: &Sp<String>, scene: &Path) -> Option<Pending> {

@@ -28,7 +28,7 @@ pub(in crate::host) struct Standing {
 
 /// A mesh file of the scene, and what moves its nodes.
 #[derive(Debug)]
-pub(super) struct Entry {
+pub(in crate::host) struct Entry {
     pub model: Arc<Model>,
     pub animation: Option<usize>,
     pub loops: bool,
@@ -104,7 +104,7 @@ impl Entry {
 }
 
 /// Which animation an entry plays, whether over and over, and from where.
-pub(super) fn animation(entry: &MeshEntry, model: &Model) -> Result<(Option<usize>, bool, f64), Diagnostic> {
+pub(in crate::host) fn animation(entry: &MeshEntry, model: &Model) -> Result<(Option<usize>, bool, f64), Diagnostic> {
     let Playing::Plays { animation, loops, start_s } = &entry.playing else { return Ok((None, false, 0.0)) };
     let Some(name) = animation else {
         return Ok(((!model.animations.is_empty()).then_some(0), *loops, *start_s));

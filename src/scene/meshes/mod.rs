@@ -89,7 +89,8 @@ pub fn read(bundle: &Bundle) -> Result<Model, Diagnostics> {
     }
     match model.filter(|_| !report.has_errors()) {
         Some(mut model) => {
-            if model.triangle_count() == 0 {
+            // A file of cameras has no need of any.
+            if model.triangle_count() == 0 && model.nodes.iter().all(|node| node.camera.is_none()) {
                 report.warn("", "the file draws no triangles");
             }
             model.diagnostics = report.finish();

@@ -235,6 +235,8 @@ impl Default for Local {
 pub struct Lens {
     pub name: String,
     pub kind: LensKind,
+    /// What keeps it from making a picture, if anything does.
+    pub fault: Option<&'static str>,
 }
 
 /// Lengths in metres, angles in radians.

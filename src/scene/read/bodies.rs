@@ -67,7 +67,7 @@ impl Reader<'_> {
         read.into_iter().collect()
     }
 
-    fn placement(&mut self, fields: &Fields<'_>) -> Option<DMat4> {
+    pub(super) fn placement(&mut self, fields: &Fields<'_>) -> Option<DMat4> {
         let Place { position, rotation, scale } = self.place(fields)?;
         if scale.to_array().contains(&0.0) {
             let at = fields.get("scale").map_or(fields.head, |node| node.span);
@@ -119,7 +119,7 @@ impl Reader<'_> {
     }
 
     /// Which animation moves it, over and over unless `loop: false`, from `start` seconds on.
-    fn playing(&mut self, fields: &Fields<'_>) -> Option<Playing> {
+    pub(super) fn playing(&mut self, fields: &Fields<'_>) -> Option<Playing> {
         let animation = match fields.get("animation") {
             Some(node) if node.as_tagged().is_some_and(|t| t.name.as_ref().is_some_and(|n| n.value == "None")) => {
                 return Some(Playing::Still);

@@ -60,7 +60,7 @@ pub(super) fn read(bundle: &Bundle, report: &mut Report) -> Option<Model> {
     let mut materials = material::Materials::read(&data, bundle, report);
     model.meshes = meshes(&data, &mut materials, report);
     (model.materials, model.images) = materials.finish();
-    model.cameras = nodes::cameras(&document);
+    model.cameras = nodes::cameras(&document, report);
     model.lights = nodes::lights(&document);
     let placed = nodes::read(&document, &mut model, report)?;
     take_draws(&model, report)?;

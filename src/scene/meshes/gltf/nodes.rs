@@ -187,19 +187,49 @@ fn local(node: &document::Node, place: &str, report: &mut Report) -> Option<Loca
     })
 }
 
-/// The cameras of a document. What stands for one that says nothing is never looked through.
-pub fn cameras(document: &Document) -> Vec<Lens> {
-    let cameras = document.cameras.iter().map(|camera| {
-        let kind = match (&camera.perspective, &camera.orthographic) {
+/// The cameras of a document. Those that make no picture are warned of, since most files are drawn
+/// and not looked through.
+pub fn cameras(document: &Document, report: &mut Report) -> Vec<Lens> {
+    let cameras = document.cameras.iter().enumerate().map(|(index, camera)| {
+        let (kind, fault) = match (&camera.perspective, &camera.orthographic) {
             (Some(p), _) => {
-                LensKind::Perspective { yfov: p.yfov, aspect: p.aspect_ratio, znear: p.znear, zfar: p.zfar }
+                (LensKind::Perspective { yfov: p.yfov, aspect: p.aspect_ratio, znear: p.znear, zfar: p.zfar }, None)
             }
-            (None, Some(o)) => LensKind::Orthographic { xmag: o.xmag, ymag: o.ymag, znear: o.znear, zfar: o.zfar },
-            (None, None) => LensKind::Perspective { yfov: 0.8, aspect: None, znear: 0.01, zfar: None },
+            (None, Some(o)) => {
+                (LensKind::Orthographic { xmag: o.xmag, ymag: o.ymag, znear: o.znear, zfar: o.zfar }, None)
+            }
+            (None, None) => (
+                LensKind::Perspective { yfov: 0.8, aspect: None, znear: 0.01, zfar: None },
+                Some("it has neither `perspective` nor `orthographic`"),
+            ),
         };
-        Lens { name: camera.name.clone(), kind }
+        let fault = fault.or_else(|| fault_of(kind));
+        if let Some(fault) = fault {
+            let name = if camera.name.is_empty() { String::new() } else { format!(" ({})", shown(&camera.name)) };
+            report.warn(format!("camera {index}{name}"), format!("{fault}: nobody can look through it"));
+        }
+        Lens { name: camera.name.clone(), kind, fault }
     });
     cameras.collect()
+}
+
+fn fault_of(kind: LensKind) -> Option<&'static str> {
+    let is_positive = |x: f32| x > 0.0 && x.is_finite();
+    match kind {
+        LensKind::Perspective { yfov, .. } if !(is_positive(yfov) && yfov < std::f32::consts::PI) => {
+            Some("its `yfov` is not between 0 and pi")
+        }
+        LensKind::Perspective { znear, .. } if !is_positive(znear) => Some("its `znear` is not above 0"),
+        LensKind::Orthographic { xmag, ymag, .. } if !(is_positive(xmag.abs()) && is_positive(ymag.abs())) => {
+            Some("its `xmag` or `ymag` is 0")
+        }
+        LensKind::Perspective { znear, zfar: Some(zfar), .. } | LensKind::Orthographic { znear, zfar, .. }
+            if zfar.is_nan() || zfar <= znear =>
+        {
+            Some("its `zfar` is not beyond its `znear`")
+        }
+        _ => None,
+    }
 }
 
 pub fn lights(document: &Document) -> Vec<Lamp> {
