@@ -14,7 +14,7 @@
 //! let mut engine = Engine::new(Gpu::from_parts(Some(adapter), device.clone(), queue.clone()));
 //!
 //! // A graph with its parts and shaders: from the disk, from memory, or one that the library carries.
-//! let loaded = load(&DiskFiles, &mut Sources::new(), "imai2014.ron", None);
+//! let loaded = load(&DiskFiles, &mut Sources::new(), "graphs/mine.ron", None);
 //! let program = loaded.program.ok_or(loaded.diagnostics)?;
 //!
 //! // A plan: plain data, made without the device, for a size and for what feeds its inputs.
