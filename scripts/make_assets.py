@@ -95,7 +95,7 @@ def rounded_block(size, radius, steps):
                 base[axis] = sign * inner[axis]
                 base[a], base[b] = sa * inner[a], sb * inner[b]
                 point = add(tuple(base), scale(normal, radius))
-                return point, normal, (0.5 + point[a] / size[a] / 2, 0.5 - point[b] / size[b] / 2)
+                return point, normal, (0.5 + point[a] / size[a], 0.5 - point[b] / size[b])
 
             first, wide = len(mesh.positions), len(ends)
             for j in range(wide):
@@ -336,6 +336,30 @@ def noise(x, y):
     return value - math.floor(value)
 
 
+def crate(x, y):
+    """A side of a wooden box, 64 by 64: boards in a frame with nails."""
+    edge = min(x, y, 63 - x, 63 - y)
+    grain = 0.1 * noise(x // 5, y) + 0.05 * noise(x, y)
+    if edge < 9:
+        # The frame's boards lie along the sides, those above and below between the others.
+        is_upright = min(x, 63 - x) < 9
+        grain = 0.1 * noise(x, y // 5) + 0.05 * noise(x, y) if is_upright else grain
+        shade = 0.92 + grain - (0.45 if edge == 8 else 0.0) - (0.3 if not is_upright and x in (9, 54) else 0.0)
+        is_nail = min(x, 63 - x) in (3, 4, 5) and min(y, 63 - y) in (12, 13, 30, 31)
+        return (92, 88, 84) if is_nail else tuple(round(min(255, c * shade)) for c in (206, 150, 92))
+    board = (y - 9) // 9
+    shade = 0.62 + 0.22 * noise(3, board) + grain - (0.32 if (y - 9) % 9 == 0 else 0.0)
+    return tuple(round(min(255, c * shade)) for c in (196, 134, 78))
+
+
+def stripes_of_ring(x, y):
+    """A quarter of a swimming ring, 64 by 32: red and white, with a dark seam between and along the inside."""
+    worn = 10 * noise(x, y)
+    if x % 32 in (0, 31) or y == 16:
+        return tuple(round(c - worn) for c in (150, 120, 104))
+    return tuple(round(c - worn) for c in ((214, 52, 30) if x < 32 else (244, 238, 226)))
+
+
 def write_buoy():
     file = Glb()
     body, lamp = buoy()
@@ -386,10 +410,11 @@ def write_boat():
 
 def main():
     OUT.mkdir(parents=True, exist_ok=True)
-    stone = "Kd 0.45 0.44 0.41\nNs 8\nPr 0.8"
-    obj("block", rounded_block((0.4, 0.4, 0.4), 0.04, 4), "A block with rounded edges", stone)
+    obj("block", rounded_block((0.4, 0.4, 0.4), 0.04, 4), "A block with rounded edges", "Kd 1 1 1\nmap_Kd block.png\nPr 0.8")
+    (OUT / "block.png").write_bytes(png(64, 64, crate))
     obj("pillar", pillar(), "A pillar with a foot and a head", "Kd 0.62 0.58 0.5\nPr 0.7")
-    obj("ring", torus(0.25, 0.08, 16, 32), "A ring", "Kd 0.72 0.2 0.06\nPr 0.35")
+    obj("ring", torus(0.25, 0.08, 16, 32), "A ring", "Kd 1 1 1\nmap_Kd ring.png\nPr 0.35")
+    (OUT / "ring.png").write_bytes(png(64, 32, stripes_of_ring))
     write_buoy()
     write_boat()
 

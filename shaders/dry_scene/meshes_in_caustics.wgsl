@@ -1,6 +1,7 @@
 // Meshes in sun and sky light, the sun's bent by the water.
-#import "dry_scene/mesh_surface.wgsl"
+#import "dry_scene/mesh_light.wgsl"
 #import "dry_scene/through_caustics.wgsl"
+#import "lib/mesh_surface.wgsl"
 
 @vertex
 fn place(
@@ -17,5 +18,6 @@ fn place(
 
 @fragment
 fn shade(in: Vertex, @builtin(front_facing) is_front: bool) -> @location(0) vec4f {
-    return mesh_color(in, is_front, through_water(in.world));
+    let surface = mesh_surface(in, is_front);
+    return mesh_color(surface, dry_light(in.world, surface.normal, through_water(in.world)), towards_eye(in.world));
 }

@@ -18,6 +18,9 @@ var<uniform> params: Params;
 // Front and back of all particles.
 var layers: texture_2d<f32>;
 var smooth_normal: texture_2d_array<f32>;
+// The dry scene without what blends, as it is seen directly: that is laid over the picture.
+var opaque_color: texture_2d<f32>;
+var opaque_z: texture_2d<f32>;
 var raw: texture_storage_2d<rgba16float, write>;
 
 @compute @workgroup_size(8, 8)
@@ -32,9 +35,9 @@ fn liquid(@builtin(global_invocation_id) id: vec3u) {
 fn seen(texel: vec2i) -> vec4f {
     let pixel = vec2f(texel) + 0.5;
     let z = textureLoad(layers, texel, 0).x;
-    let dry = textureLoad(dry_z, texel, 0).x;
+    let dry = textureLoad(opaque_z, texel, 0).x;
     if z == 0.0 || (dry != 0.0 && dry > z) {
-        return textureLoad(dry_color, texel, 0);
+        return textureLoad(opaque_color, texel, 0);
     }
     let view = normalize(eye_ray(pixel).direction);
     return vec4f(seen_through(eye_from_pixel(pixel, z), view, pixel), 1.0);

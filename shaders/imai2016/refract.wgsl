@@ -20,6 +20,9 @@ var<uniform> params: Params;
 // Front and back of the body, front and back of the splashes.
 var layers: texture_2d<f32>;
 var smooth_normal: texture_2d_array<f32>;
+// The dry scene without what blends, as it is seen directly: that is laid over the picture.
+var opaque_color: texture_2d<f32>;
+var opaque_z: texture_2d<f32>;
 var raw: texture_storage_2d<rgba16float, write>;
 var splash_normal: texture_2d_array<f32>;
 
@@ -38,9 +41,9 @@ fn seen(texel: vec2i) -> vec4f {
     // The nearer of the fronts; 0 is nothing.
     let in_body = z.x != 0.0 && (z.z == 0.0 || z.x >= z.z);
     let front = select(z.z, z.x, in_body);
-    let dry = textureLoad(dry_z, texel, 0).x;
+    let dry = textureLoad(opaque_z, texel, 0).x;
     if front == 0.0 || (dry != 0.0 && dry > front) {
-        return textureLoad(dry_color, texel, 0);
+        return textureLoad(opaque_color, texel, 0);
     }
     let first = Crossing(true, select(SPLASH, BODY, in_body), 0.0, pixel);
     return vec4f(seen_through(eye_from_pixel(pixel, front), normalize(eye_ray(pixel).direction), first), 1.0);

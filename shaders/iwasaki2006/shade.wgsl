@@ -25,10 +25,18 @@ var sky_cube: texture_cube<f32>;
 /// 1 where the eye is outside, -1 under water.
 var<storage, read> eye: array<f32>;
 
-/// The first mesh that a ray going down meets in the sliced object images: its light, and t; t is 0 where there is none.
-fn slice_hit(p: vec3f, direction: vec3f, reach: f32) -> vec4f {
+/// What a ray meets in the sliced object images: light, of which water has taken its part, and what is left of what
+/// comes from behind.
+struct SliceHit {
+    light: vec3f,
+    left: f32,
+}
+
+/// The meshes that a ray going down meets in the sliced object images: the first, and those that blend before it.
+fn slice_hit(p: vec3f, direction: vec3f, reach: f32) -> SliceHit {
+    var found = SliceHit(vec3f(0.0), 1.0);
     if direction.y > -0.01 {
-        return vec4f(0.0);
+        return found;
     }
     let seen_along = slice_view(camera.position);
     let last = plane_stack.planes - 1u;
@@ -45,12 +53,24 @@ fn slice_hit(p: vec3f, direction: vec3f, reach: f32) -> vec4f {
         }
         let texel = vec2u(uv * vec2f(size));
         let color = textureSampleLevel(slices, linear_clamp, uv, slice, 0.0);
-        let t_hit = (textureLoad(slice_heights, texel, slice, 0).x - p.y) / direction.y;
-        if textureLoad(slices, texel, slice, 0).a > 0.0 && color.a > 0.5 && t_hit > 0.0 && t_hit < reach {
-            return vec4f(color.rgb / color.a, t_hit);
+        let covers = textureLoad(slices, texel, slice, 0).a;
+        let height = textureLoad(slice_heights, texel, slice, 0).x;
+        let t_hit = (height - p.y) / direction.y;
+        if covers == 0.0 || color.a <= 0.5 * covers || t_hit <= 0.0 || t_hit >= reach {
+            continue;
+        }
+        // Slices overlap: what blends is in two of them there, and counts in its own.
+        let is_opaque = covers > 0.999;
+        let is_own = (slice == 0u || height < upper) && (slice + 1u == last || height >= upper - spacing);
+        if is_opaque || is_own {
+            found.light += found.left * covers * color.rgb / color.a * transmitted(plane_stack.absorption, t_hit);
+            found.left *= select(1.0 - covers, 0.0, is_opaque);
+        }
+        if is_opaque {
+            break;
         }
     }
-    return vec4f(0.0);
+    return found;
 }
 
 /// Metres that a ray goes in the box where the water is.
@@ -117,21 +137,18 @@ fn met(p: vec3f, towards: vec3f, starts_wet: bool, footprint: f32) -> vec3f {
     }
     var light = textureSampleLevel(sky_cube, linear_clamp, direction, 0.0).rgb;
     var way = select(0.0, min(hit.t, in_box_m(p, direction)), is_wet);
-    var mesh = vec4f(0.0);
+    var mesh = SliceHit(vec3f(0.0), 1.0);
     if is_wet {
         mesh = slice_hit(p, direction, hit.t);
     }
-    if mesh.w > 0.0 {
-        light = mesh.rgb;
-        way = mesh.w;
-    } else if hit.kind != NOTHING {
+    if mesh.left > 0.0 && hit.kind != NOTHING {
         let slant = max(abs(dot(hit.normal, direction)), 0.1);
         let color = pool_color(p + hit.t * direction, hit.normal, hit.kind, footprint / slant);
         light = color.rgb + (1.0 - color.a) * light;
         // What goes up has left the water somewhere.
         way = select(way, hit.t, is_wet && direction.y <= 0.0);
     }
-    return light * transmitted(plane_stack.absorption, way);
+    return mesh.light + mesh.left * light * transmitted(plane_stack.absorption, way);
 }
 
 /// What a surface seen from outside sends: what it mirrors, and what comes through the water and out of it again.

@@ -3,6 +3,7 @@
 #import "lib/light_screen.wgsl"
 #import "lib/mesh_shadow.wgsl"
 #import "lib/sample_planes.wgsl"
+#import "lib/surface_light.wgsl"
 
 struct Planes {
     planes: u32,
@@ -52,9 +53,9 @@ fn sky_light(normal: vec3f) -> vec3f {
     return max(sum, vec3f(0.0));
 }
 
-/// Light that a matt surface of albedo 1 sends back at a point with a normal: equation 2's receiver, the sun's share
-/// turned from the planes to the surface, and the ambient share L_a.
-fn lit(p: vec3f, normal: vec3f) -> vec3f {
+/// Light on a surface at a point with a normal: equation 2's receiver, the sun's share turned from the planes to the
+/// surface, and the ambient share L_a.
+fn light_of_planes(p: vec3f, normal: vec3f) -> SurfaceLight {
     let water_m = under_water_m(p);
     let wet = water_m > 0.0;
     let towards = -select(sun.direction, bent_sun(), wet);
@@ -62,5 +63,11 @@ fn lit(p: vec3f, normal: vec3f) -> vec3f {
     // Water lets most of the sky's light in; it comes from above then.
     let sky = select(sky_light(normal), 0.9 * mix(sky_light(normal), sky_light(vec3f(0.0, 1.0, 0.0)), 0.5), wet);
     let sky_left = exp(-plane_stack.absorption * max(-sun.direction.y, 0.0) * water_m);
-    return (light_on_level(p) * past_meshes(p) * turned + sky * sky_left) / 3.14159265;
+    return SurfaceLight(sky * sky_left, sky_left, light_on_level(p) * past_meshes(p) * turned, towards);
+}
+
+/// What a matt surface of albedo 1 sends back of it.
+fn lit(p: vec3f, normal: vec3f) -> vec3f {
+    let light = light_of_planes(p, normal);
+    return (light.sun + light.sky) / 3.14159265;
 }

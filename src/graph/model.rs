@@ -124,6 +124,7 @@ pub const MESH_FIELDS: &[&str] = &[
     "triangles",
     "material",
     "count",
+    "blended",
     "min",
     "max",
 ];
@@ -359,6 +360,8 @@ pub struct Draw {
     pub meshes: Option<Name>,
     /// Of `meshes`: only bodies with one of these; absent: all.
     pub tags: Option<Vec<Name>>,
+    /// Of `meshes`: only what blends, or only what does not; absent: all.
+    pub only: Option<Covering>,
     pub topology: Topology,
     pub cull: Option<Face>,
     pub front_ccw: bool,
@@ -367,6 +370,14 @@ pub struct Draw {
     pub samples: Option<Expr>,
     /// x, y, width, height in pixels: viewport and scissor.
     pub region: Option<Sp<Vec<Expr>>>,
+}
+
+/// How materials cover what is behind them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Covering {
+    /// Wholly, or by cut out parts.
+    Opaque,
+    Blended,
 }
 
 #[derive(Clone, Debug)]

@@ -8,7 +8,7 @@ use super::moving::Moving;
 use super::picture::{self, PictureKind, Texels};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::engine::{Frame, Report, Runner, TextureData};
-use crate::plan::model::{ObjectKind, ObjectRef, Plan};
+use crate::plan::model::{Object, ObjectKind, ObjectRef, Plan};
 use crate::plan::stats::Statistic;
 
 /// Frames a second, where nobody says.
@@ -187,7 +187,11 @@ impl Session {
         let Some(plan) = self.plan() else { return found };
         for count in report.counts.iter().filter(|count| count.raw == 0) {
             let object = plan.objects.iter().find(|object| object.path == count.path);
-            if let Some((object, text)) = object.and_then(|object| Some((object, object.empty.as_ref()?))) {
+            // What has no room was not meant to hold anything.
+            let has_room = |object: &&Object| !matches!(&object.kind, ObjectKind::Buffer(buffer) if buffer.items == 0);
+            if let Some((object, text)) =
+                object.filter(has_room).and_then(|object| Some((object, object.empty.as_ref()?)))
+            {
                 let message = format!("nothing came to `{}`: {text}", count.path);
                 found.push(Diagnostic::warning(Code::EMPTY, message).at(object.span, "stayed empty"));
             }

@@ -54,7 +54,7 @@ pub const PARTICLES: &[(&str, FieldType)] =
 
 /// Scalars of meshes, besides their buffers; known when planning.
 pub const MESHES: &[(&str, FieldType)] =
-    &[("count", FieldType::Int), ("min", FieldType::Vec3), ("max", FieldType::Vec3)];
+    &[("count", FieldType::Int), ("blended", FieldType::Int), ("min", FieldType::Vec3), ("max", FieldType::Vec3)];
 
 /// Scalars that every graph has while a frame runs.
 pub const FRAME: &[(&str, FieldType)] =

@@ -315,16 +315,16 @@ pub fn instance_type() -> Type {
     Type::Struct { name: "Instance".into(), members, size: INSTANCE_BYTES }
 }
 
-/// The scene that graphs are checked with: two bodies of two materials.
+/// The scene that graphs are checked with: two bodies of two materials, of which one blends.
 pub fn stand_in() -> MeshesInfo {
-    let draw = |first_index, first_instance, material, faces| MeshDraw {
+    let draw = |first_index, first_instance, material, faces, blended| MeshDraw {
         first_index,
         indices: 36,
         first_instance,
         instances: 1,
         material,
         faces,
-        blended: false,
+        blended,
         tags: Vec::new(),
     };
     MeshesInfo {
@@ -333,7 +333,10 @@ pub fn stand_in() -> MeshesInfo {
         vertices: 48,
         triangles: 24,
         materials: 2,
-        draws: vec![draw(0, 0, 0, Faces::default()), draw(36, 1, 1, Faces { double_sided: true, mirrored: false })],
+        draws: vec![
+            draw(0, 0, 0, Faces::default(), false),
+            draw(36, 1, 1, Faces { double_sided: true, mirrored: false }, true),
+        ],
         min: [-1.0, 0.0, -1.0],
         max: [1.0, 1.0, 1.0],
         animated: true,

@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 mod bad_input;
+mod blended;
 mod cameras;
 mod compute;
 mod distance;
@@ -106,6 +107,8 @@ fn main() -> ExitCode {
         submerged::what_stands_in_the_liquid_is_seen_through_it,
         submerged::what_stands_before_the_liquid_hides_it,
         submerged::what_rays_pass_on_their_way_is_met,
+        blended::the_liquid_is_seen_through_glass_before_it,
+        blended::glass_behind_the_liquid_is_seen_through_it,
         samples::samples_look_as_their_files_say,
         samples::the_animated_sample_moves_as_its_file_says,
         maps::normal_maps_turn_normals,

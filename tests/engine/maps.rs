@@ -11,6 +11,7 @@ use serde_json::{Value, json};
 use crate::samples::{FOV_DEGREES, Lights, SIZE, View, lit, png};
 
 const EYE: DVec3 = dvec3(0.0, 0.0, 5.0);
+const GRAPHS: [&str; 2] = ["imai2016.ron", "iwasaki2006.ron"];
 const DARK: Lights = Lights { sky: 0, sun: None };
 /// The middles of the quarters, in the order of texels: the upper row first.
 const QUARTERS: [[f64; 2]; 4] = [[-0.5, 0.5], [0.5, 0.5], [-0.5, -0.5], [0.5, -0.5]];
@@ -58,9 +59,9 @@ fn square(material: Value, texels: &[[u8; 3]; 4], is_mirrored: bool) -> MemoryFi
 }
 
 /// The light of each quarter.
-fn quarters(engine: &mut Engine, files: MemoryFiles, lights: &Lights) -> [DVec3; 4] {
+fn quarters(engine: &mut Engine, graph: &str, files: MemoryFiles, lights: &Lights) -> [DVec3; 4] {
     let view = View { eye: EYE, target: DVec3::ZERO };
-    let light = lit(engine, files, Path::new("square.gltf"), &view, lights, 0.0);
+    let light = lit(engine, graph, files, Path::new("square.gltf"), &view, lights, 0.0);
     let to_pixel = f64::from(SIZE[1]) / 2.0 / (EYE.z * (FOV_DEGREES.to_radians() / 2.0).tan());
     QUARTERS.map(|[x, y]| {
         let [column, row] = [f64::from(SIZE[0]) / 2.0 + x * to_pixel, f64::from(SIZE[1]) / 2.0 - y * to_pixel];
@@ -97,6 +98,10 @@ fn off(found: &[DVec3; 4], foretold: &[DVec3; 4]) -> f64 {
 const NEAR: f64 = 0.06;
 
 pub fn normal_maps_turn_normals(engine: &mut Engine) {
+    GRAPHS.into_iter().for_each(|graph| normal_maps_turn_normals_in(engine, graph));
+}
+
+fn normal_maps_turn_normals_in(engine: &mut Engine, graph: &str) {
     let base = dvec3(0.8, 0.4, 0.2);
     let texels = [[192, 128, 230], [64, 160, 220], [128, 220, 200], [140, 40, 220]];
     let to_light = dvec3(0.5, 0.7, 1.0);
@@ -105,7 +110,8 @@ pub fn normal_maps_turn_normals(engine: &mut Engine) {
             "pbrMetallicRoughness": {"baseColorFactor": [base.x, base.y, base.z, 1.0], "metallicFactor": 0.0},
             "normalTexture": {"index": 0, "scale": scale},
         });
-        let found = quarters(engine, square(material, &texels, is_mirrored), &Lights { sky: 0, sun: Some(to_light) });
+        let found =
+            quarters(engine, graph, square(material, &texels, is_mirrored), &Lights { sky: 0, sun: Some(to_light) });
         // A texture's right and up are those of the square, and its right the square's left where that is mirrored.
         let foretold = |signs: DVec3| {
             std::array::from_fn(|quarter| {
@@ -117,35 +123,46 @@ pub fn normal_maps_turn_normals(engine: &mut Engine) {
         };
         let right = if is_mirrored { -1.0 } else { 1.0 };
         let found_off = off(&found, &foretold(dvec3(right, 1.0, 1.0)));
-        assert!(found_off < NEAR, "{scale} {is_mirrored}: {found_off}, {found:?}");
+        assert!(found_off < NEAR, "{graph} {scale} {is_mirrored}: {found_off}, {found:?}");
         for (wrong, what) in [(dvec3(-right, 1.0, 1.0), "left for right"), (dvec3(right, -1.0, 1.0), "down for up")] {
-            assert!(off(&found, &foretold(wrong)) > 2.0 * NEAR, "{scale} {is_mirrored}: {what} is seen");
+            assert!(off(&found, &foretold(wrong)) > 2.0 * NEAR, "{graph} {scale} {is_mirrored}: {what} is seen");
         }
-        assert!(off(&found, &foretold(dvec3(0.0, 0.0, 1.0))) > 2.0 * NEAR, "{scale} {is_mirrored}: none is seen");
+        assert!(
+            off(&found, &foretold(dvec3(0.0, 0.0, 1.0))) > 2.0 * NEAR,
+            "{graph} {scale} {is_mirrored}: none is seen"
+        );
     }
 }
 
 pub fn green_is_rough_and_blue_is_metal(engine: &mut Engine) {
+    GRAPHS.into_iter().for_each(|graph| green_is_rough_and_blue_is_metal_in(engine, graph));
+}
+
+fn green_is_rough_and_blue_is_metal_in(engine: &mut Engine, graph: &str) {
     let base = dvec3(0.9, 0.6, 0.3);
     let texels = [[255, 100, 0], [0, 140, 255], [90, 200, 128], [255, 255, 20]];
     let to_light = dvec3(0.4, 0.5, 1.0);
     let material = json!({"pbrMetallicRoughness": {
         "baseColorFactor": [base.x, base.y, base.z, 1.0], "metallicRoughnessTexture": {"index": 0}, "roughnessFactor": 0.9,
     }});
-    let found = quarters(engine, square(material, &texels, false), &Lights { sky: 0, sun: Some(to_light) });
+    let found = quarters(engine, graph, square(material, &texels, false), &Lights { sky: 0, sun: Some(to_light) });
     let foretold = |rough: usize, metal: usize| {
         std::array::from_fn(|quarter| {
             let [roughness, metallic] = [rough, metal].map(|channel| f64::from(texels[quarter][channel]) / 255.0);
             sent(base, metallic, (roughness * 0.9).max(0.04), DVec3::Z, QUARTERS[quarter], to_light)
         })
     };
-    assert!(off(&found, &foretold(1, 2)) < NEAR, "{found:?} for {:?}", foretold(1, 2));
+    assert!(off(&found, &foretold(1, 2)) < NEAR, "{graph}: {found:?} for {:?}", foretold(1, 2));
     for (rough, metal) in [(2, 1), (0, 2), (1, 0)] {
         assert!(off(&found, &foretold(rough, metal)) > 2.0 * NEAR, "channels {rough} and {metal} are seen");
     }
 }
 
 pub fn red_keeps_the_light_of_the_sky_out(engine: &mut Engine) {
+    GRAPHS.into_iter().for_each(|graph| red_keeps_the_light_of_the_sky_out_in(engine, graph));
+}
+
+fn red_keeps_the_light_of_the_sky_out_in(engine: &mut Engine, graph: &str) {
     let texels = [[255, 0, 10], [128, 255, 10], [60, 90, 255], [0, 255, 90]];
     let material = |strength: Option<f64>| {
         let mut material =
@@ -156,32 +173,39 @@ pub fn red_keeps_the_light_of_the_sky_out(engine: &mut Engine) {
         material
     };
     let sky = Lights { sky: 255, sun: None };
-    let open = quarters(engine, square(material(None), &texels, false), &sky);
-    assert!(open.iter().all(|light| (0.45..0.6).contains(&light.x)), "an even sky shows the base colour: {open:?}");
+    let open = quarters(engine, graph, square(material(None), &texels, false), &sky);
+    assert!(
+        open.iter().all(|light| (0.45..0.6).contains(&light.x)),
+        "an even sky shows the base colour: {graph}: {open:?}"
+    );
     for strength in [1.0, 0.75] {
-        let found = quarters(engine, square(material(Some(strength)), &texels, false), &sky);
+        let found = quarters(engine, graph, square(material(Some(strength)), &texels, false), &sky);
         let foretold = |channel: usize| {
             let left = |quarter: usize| 1.0 + strength * (f64::from(texels[quarter][channel]) / 255.0 - 1.0);
             std::array::from_fn(|quarter| open[quarter] * left(quarter))
         };
-        assert!(off(&found, &foretold(0)) < 0.01, "{strength}: {found:?} for {:?}", foretold(0));
+        assert!(off(&found, &foretold(0)) < 0.01, "{graph} {strength}: {found:?} for {:?}", foretold(0));
         assert!(off(&found, &foretold(1)) > 0.1 && off(&found, &foretold(2)) > 0.1, "another channel is seen");
         // Light that falls straight in is not kept out.
-        let sun = Lights { sky: 0, sun: Some(DVec3::Z) };
+        let sun = Lights { sky: 0, sun: Some(dvec3(0.0, 0.5, 1.0)) };
         let [with, without] =
-            [Some(strength), None].map(|some| quarters(engine, square(material(some), &texels, false), &sun));
-        assert!(off(&with, &without) < 0.01, "{strength}: {with:?} for {without:?}");
+            [Some(strength), None].map(|some| quarters(engine, graph, square(material(some), &texels, false), &sun));
+        assert!(off(&with, &without) < 0.01, "{graph} {strength}: {with:?} for {without:?}");
     }
 }
 
 pub fn what_glows_needs_no_light(engine: &mut Engine) {
+    GRAPHS.into_iter().for_each(|graph| what_glows_needs_no_light_in(engine, graph));
+}
+
+fn what_glows_needs_no_light_in(engine: &mut Engine, graph: &str) {
     let texels = [[255, 128, 0], [64, 64, 64], [0, 0, 0], [10, 200, 255]];
     let factor = dvec3(0.5, 1.0, 0.25);
     let material = json!({
         "emissiveFactor": [factor.x, factor.y, factor.z], "emissiveTexture": {"index": 0},
         "extensions": {"KHR_materials_emissive_strength": {"emissiveStrength": 3.0}},
     });
-    let found = quarters(engine, square(material, &texels, false), &DARK);
+    let found = quarters(engine, graph, square(material, &texels, false), &DARK);
     let foretold = |linear: fn(f64) -> f64| {
         texels.map(|texel| {
             let [r, g, b] = texel.map(|x| linear(f64::from(x) / 255.0));
@@ -189,6 +213,6 @@ pub fn what_glows_needs_no_light(engine: &mut Engine) {
         })
     };
     let from_srgb = |x: f64| if x <= 0.04045 { x / 12.92 } else { ((x + 0.055) / 1.055).powf(2.4) };
-    assert!(off(&found, &foretold(from_srgb)) < 0.01, "{found:?} for {:?}", foretold(from_srgb));
+    assert!(off(&found, &foretold(from_srgb)) < 0.01, "{graph}: {found:?} for {:?}", foretold(from_srgb));
     assert!(off(&found, &foretold(|x| x)) > 0.1, "texels taken for linear are seen");
 }

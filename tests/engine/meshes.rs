@@ -145,7 +145,8 @@ fn seen(files: &MemoryFiles, moment: Moment, points: &[[f32; 2]]) -> Vec<[f32; 4
     let said = render_all(&loaded.diagnostics, &sources, Style::Plain);
     let mut session = Session::new(Gpu::open(&GpuOptions::default()).unwrap());
     session.build(loaded.content.unwrap_or_else(|| panic!("{said}"))).unwrap();
-    session.draw(moment, false).unwrap();
+    let said = session.draw(moment, false).unwrap().diagnostics;
+    assert!(said.iter().next().is_none(), "{}", render_all(&said, &sources, Style::Plain));
     let light = session.light().unwrap();
     let at = |[x, y]: &[f32; 2]| {
         let (column, row) = (((x + 2.0) * 16.0) as usize, ((2.0 - y) * 16.0) as usize);

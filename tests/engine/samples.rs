@@ -179,7 +179,7 @@ pub fn png(width: u32, texels: &[[u8; 3]]) -> Vec<u8> {
 }
 
 fn drawn(engine: &mut Engine, path: &Path, view: &View, time_s: f64) -> Vec<[f32; 4]> {
-    lit(engine, MemoryFiles::default(), path, view, &Lights { sky: 255, sun: None }, time_s)
+    lit(engine, "imai2016.ron", MemoryFiles::default(), path, view, &Lights { sky: 255, sun: None }, time_s)
 }
 
 /// The light of an even sky, and where a sun of intensity 1 stands.
@@ -191,6 +191,7 @@ pub struct Lights {
 /// The light that a camera sees of a mesh file.
 pub fn lit(
     engine: &mut Engine,
+    graph: &str,
     files: MemoryFiles,
     path: &Path,
     view: &View,
@@ -198,10 +199,11 @@ pub fn lit(
     time_s: f64,
 ) -> Vec<[f32; 4]> {
     let triple = |v: DVec3| format!("({:?}, {:?}, {:?})", v.x, v.y, v.z);
+    let floor = if graph.starts_with("imai") { "\"dry.floor\": false, " } else { "" };
     let scene = format!(
-        "Scene(graph: \"imai2016.ron\", camera: Camera(eye: {}, target: {}, fov: {FOV_DEGREES:?}), size: ({}, {}),
+        "Scene(graph: {graph:?}, camera: Camera(eye: {}, target: {}, fov: {FOV_DEGREES:?}), size: ({}, {}),
             lights: {{\"sun\": Light(direction: {}, intensity: {:?})}}, environment: \"even.png\",
-            meshes: {{\"meshes\": [{path:?}]}}, params: {{\"dry.floor\": false, \"antialias\": false}})",
+            meshes: {{\"meshes\": [{path:?}]}}, params: {{{floor}\"antialias\": false}})",
         triple(view.eye),
         triple(view.target),
         SIZE[0],

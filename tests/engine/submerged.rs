@@ -17,7 +17,7 @@ const NO_FLOOR: &[(&str, &str)] = &[("dry.floor", "false")];
 const SQUARE: &str = "v -0.3 0 -0.3\nv -0.3 0 0.3\nv 0.3 0 0.3\nv 0.3 0 -0.3";
 /// A board of 0.17 m by 0.9 m that stands upright near an edge of the pool and faces it.
 const POST: &str = "v 0.29 0 0.41\nv 0.41 0 0.29\nv 0.41 0.9 0.29\nv 0.29 0.9 0.41";
-const ABOVE: &str = "eye: (0, 2.6, 1.3), target: (0, 0.25, 0)";
+pub const ABOVE: &str = "eye: (0, 2.6, 1.3), target: (0, 0.25, 0)";
 /// Through two sides of the pool, from before the edge between them.
 const ASIDE: &str = "eye: (2.3, 1.6, 2.3), target: (0, 0.5, 0)";
 
@@ -29,6 +29,13 @@ fn files(graph: &str, height_m: f64, is_pool: bool) -> MemoryFiles {
 /// Something red in a pool of 1.5 m with so many layers of particles, 0.05 m apart.
 fn seen(graph: &str, corners: &str, camera: &str, height_m: f64, layers: usize) -> MemoryFiles {
     let obj = format!("mtllib red.mtl\n{corners}\nusemtl red\nf 1 2 3 4\n");
+    pool(graph, "red.obj", camera, height_m, layers)
+        .with("red.obj", obj)
+        .with("red.mtl", "newmtl red\nKd 0.8 0.02 0.02\nPr 0.9\n")
+}
+
+/// A mesh file in such a pool.
+pub fn pool(graph: &str, mesh: &str, camera: &str, height_m: f64, layers: usize) -> MemoryFiles {
     let is_pool = layers > 0;
     let place = |i: usize| [i % 30, i / 900, i / 30 % 30].map(|n| n as f64 * 0.05);
     let rows =
@@ -37,13 +44,9 @@ fn seen(graph: &str, corners: &str, camera: &str, height_m: f64, layers: usize) 
     let scene = format!(
         "Scene(graph: {graph:?}, camera: Camera({camera}, fov: 35.0), size: (96, 72),
             lights: {{\"sun\": Light(direction: (0.1, -1, -0.1), intensity: 3.0)}}, {particles}
-            meshes: {{\"meshes\": [(file: \"red.obj\", position: (0, {height_m:?}, 0))]}})"
+            meshes: {{\"meshes\": [(file: {mesh:?}, position: (0, {height_m:?}, 0))]}})"
     );
-    MemoryFiles::default()
-        .with("red.obj", obj)
-        .with("red.mtl", "newmtl red\nKd 0.8 0.02 0.02\nPr 0.9\n")
-        .with("pool.csv", format!("x,y,z\n{}", rows.collect::<String>()))
-        .with("scene.ron", scene)
+    MemoryFiles::default().with("pool.csv", format!("x,y,z\n{}", rows.collect::<String>())).with("scene.ron", scene)
 }
 
 /// How many pixels are red.
@@ -59,6 +62,14 @@ fn red_within(
     size: [u32; 2],
     [x, y]: [Range<usize>; 2],
 ) -> usize {
+    let is_red = |[r, g, b, _]: &&[f32; 4]| *r > 0.05 && *r > 2.0 * g.max(*b);
+    let light = light(engine, files, set, size);
+    let width = size[0] as usize;
+    y.flat_map(|row| &light[row * width..][x.clone()]).filter(is_red).count()
+}
+
+/// The picture's light, row by row.
+pub fn light(engine: &mut Engine, files: &MemoryFiles, set: &[(&str, &str)], size: [u32; 2]) -> Vec<[f32; 4]> {
     let (mut sources, mut cache) = (Sources::new(), Cache::default());
     let set = set.iter().map(|(name, value)| ((*name).to_owned(), (*value).to_owned())).collect();
     let job = Job { source: PathBuf::from("scene.ron"), set, size: Some(size), ..Job::default() };
@@ -67,11 +78,9 @@ fn red_within(
     let mut session = Session::new(engine.gpu().clone());
     session.build(loaded.content.unwrap_or_else(|| panic!("{said}"))).unwrap();
     session.draw(Moment::default(), true).unwrap();
-    let is_red = |[r, g, b, _]: &&[f32; 4]| *r > 0.05 && *r > 2.0 * g.max(*b);
     let light = session.light().unwrap();
-    let width = size[0] as usize;
-    assert_eq!(light.rgba.len(), width * size[1] as usize);
-    y.flat_map(|row| &light.rgba[row * width..][x.clone()]).filter(is_red).count()
+    assert_eq!(light.rgba.len(), (size[0] * size[1]) as usize);
+    light.rgba
 }
 
 pub fn what_stands_in_the_liquid_is_seen_through_it(engine: &mut Engine) {

@@ -65,7 +65,7 @@ pub fn holds_what_its_plan_says(engine: &mut Engine, name: &str) {
 
 /// A shipped graph whose frame is cut.
 fn cut(engine: &mut Engine, alter: fn(&mut Plan)) -> Shipped<'_> {
-    let mut shipped = Shipped::alone(engine, "imai2016.ron", alter);
+    let mut shipped = Shipped::alone(engine, "iwasaki2006.ron", alter);
     shipped.request.viewport = [320, 240];
     shipped.policy = Policy::Smallest;
     assert!(!shipped.plan().memory.cuts.is_empty(), "the frame is cut");

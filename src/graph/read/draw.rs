@@ -6,14 +6,15 @@ use super::values::{bind, expr, expr_field, exprs_of, path_field, place, tagged,
 use crate::diagnostic::{Code, Diagnostic};
 use crate::graph::expr::{Expr, ExprKind};
 use crate::graph::model::{
-    Blend, BlendComponent, Compare, Count, Depth, Draw, Face, Factor, Indirect, Name, Operation, Stencil,
+    Blend, BlendComponent, Compare, Count, Covering, Depth, Draw, Face, Factor, Indirect, Name, Operation, Stencil,
     StencilOperation, Target, Topology,
 };
 use crate::graph::value::Value;
 use crate::syntax::{Decoder, Fields, Kind, Node, Sp, Tagged};
 
 const COMMON: &[&str] = &["shader", "color", "depth", "samples", "region", "name", "bind"];
-const GEOMETRY: &[&str] = &["vertices", "instances", "indices", "draw", "meshes", "tags", "topology", "cull", "front"];
+const GEOMETRY: &[&str] =
+    &["vertices", "instances", "indices", "draw", "meshes", "tags", "only", "topology", "cull", "front"];
 
 const TOPOLOGIES: &[(&str, Topology)] = &[
     ("PointList", Topology::PointList),
@@ -22,6 +23,8 @@ const TOPOLOGIES: &[(&str, Topology)] = &[
     ("TriangleList", Topology::TriangleList),
     ("TriangleStrip", Topology::TriangleStrip),
 ];
+
+const COVERINGS: &[(&str, Covering)] = &[("Opaque", Covering::Opaque), ("Blended", Covering::Blended)];
 
 const FACTORS: &[(&str, Factor)] = &[
     ("Zero", Factor::Zero),
@@ -76,6 +79,7 @@ pub(super) fn draw(d: &mut Decoder<'_>, tag: &Tagged, has_geometry: bool) -> Opt
         indirect: geometry.indirect,
         meshes: geometry.meshes,
         tags: geometry.tags,
+        only: geometry.only,
         topology: geometry.topology.unwrap_or(Topology::TriangleList),
         cull: geometry.cull,
         front_ccw: !geometry.is_clockwise,
@@ -96,6 +100,7 @@ struct Geometry {
     indirect: Option<Indirect>,
     meshes: Option<Name>,
     tags: Option<Vec<Name>>,
+    only: Option<Covering>,
     topology: Option<Topology>,
     cull: Option<Face>,
     is_clockwise: bool,
@@ -137,6 +142,7 @@ fn geometry(d: &mut Decoder<'_>, fields: &Fields<'_>) -> Geometry {
         indirect: fields.get("draw").and_then(|node| indirect(d, node)),
         meshes: path_field(d, fields, "meshes"),
         tags: fields.get("tags").and_then(|node| tags(d, node, &place(fields, "tags"))),
+        only: fields.get("only").and_then(|node| d.choice(node, &place(fields, "only"), COVERINGS)),
         topology: fields.get("topology").and_then(|node| d.choice(node, &place(fields, "topology"), TOPOLOGIES)),
         cull: fields.get("cull").and_then(|node| d.choice(node, &place(fields, "cull"), FACES)).flatten(),
         is_clockwise: fields
@@ -148,7 +154,8 @@ fn geometry(d: &mut Decoder<'_>, fields: &Fields<'_>) -> Geometry {
 
 /// Meshes bring their own vertices, triangles and instances.
 fn beside_meshes(d: &mut Decoder<'_>, fields: &Fields<'_>) {
-    let fault = match (fields.entry("meshes"), fields.entry("tags")) {
+    let chooses = ["tags", "only"].into_iter().find_map(|name| Some((name, fields.entry(name)?.0)));
+    let fault = match (fields.entry("meshes"), chooses) {
         (Some((meshes, _)), _) => {
             let others = ["vertices", "instances", "indices", "draw", "topology"];
             let Some((name, (other, _))) = others.iter().find_map(|o| Some((o, fields.entry(o)?))) else { return };
@@ -157,9 +164,11 @@ fn beside_meshes(d: &mut Decoder<'_>, fields: &Fields<'_>) {
                 .see(meshes.span, "draws the triangles of meshes")
                 .hint(format!("leave `{name}` out: meshes are triangles, as many as there are"))
         }
-        (None, Some((tags, _))) => Diagnostic::error(Code::BAD_PASS, "`tags` says which meshes are drawn")
-            .at(tags.span, "without `meshes`")
-            .hint("say `meshes: \"...\"`"),
+        (None, Some((name, given))) => {
+            Diagnostic::error(Code::BAD_PASS, format!("`{name}` says which meshes are drawn"))
+                .at(given.span, "without `meshes`")
+                .hint("say `meshes: \"...\"`")
+        }
         (None, None) => return,
     };
     d.push(fault);

@@ -11,7 +11,7 @@ use super::names::{Entity, list};
 use super::nodes::Draft;
 use super::{Building, CauseKind, CauseSet, Layout, Lowering, Place, Result, Scalar, ScopeId, VarId, fault, traced};
 use crate::diagnostic::{Code, Span};
-use crate::graph::model::{self as ast, InputKind, Name, Param};
+use crate::graph::model::{self as ast, Covering, InputKind, Name, Param};
 use crate::graph::value::Value;
 use crate::plan::meshes::{
     MeshBuffer, MeshDraw, MeshGeometry, MeshesInfo, VertexAttribute, VertexBuffer, instance_type,
@@ -66,6 +66,9 @@ impl<'p> Lowering<'p> {
         let causes = self.causes_of(root);
         let scalar = match field {
             "count" => Some(Value::Int(i64::try_from(info.bodies).unwrap_or(i64::MAX))),
+            "blended" => Some(Value::Int(
+                info.draws.iter().filter(|call| call.blended).map(|call| i64::from(call.instances)).sum(),
+            )),
             "min" => Some(Value::vec(info.min)),
             "max" => Some(Value::vec(info.max)),
             _ => None,
@@ -226,7 +229,8 @@ impl<'p> Lowering<'p> {
             Some(tags) => tags.iter().any(|tag| call.tags.contains(&tag.value)),
             None => true,
         };
-        let draws = info.draws.iter().filter(|call| tagged(call)).cloned().collect();
+        let covers = |call: &MeshDraw| draw.only.is_none_or(|only| call.blended == (only == Covering::Blended));
+        let draws = info.draws.iter().filter(|call| tagged(call) && covers(call)).cloned().collect();
         Ok(Geometry::Meshes(MeshGeometry { input: meshes.root.clone(), indices, vertices, draws }))
     }
 

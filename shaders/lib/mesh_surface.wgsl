@@ -1,12 +1,11 @@
 // Meshes in sun and sky light by glTF 2.0's metallic-roughness model (appendix B): Lambert and GGX for the sun, the
-// sky's irradiance and its prefiltered picture for the rest. Premultiplied colour.
-#import "dry_scene/skylight.wgsl"
-#import "dry_scene/sunlight.wgsl"
+// sky's irradiance and its prefiltered picture for the rest. Who imports this says how much light there is at a place.
 #import "lib/camera.wgsl"
 #import "lib/linear_clamp.wgsl"
 #import "lib/mesh_place.wgsl"
+#import "lib/surface_light.wgsl"
 
-struct Params {
+struct Prefiltered {
     specular_levels: u32,
 }
 
@@ -46,7 +45,7 @@ struct Vertex {
 
 const PI = 3.14159265;
 
-var<uniform> params: Params;
+var<uniform> prefiltered: Prefiltered;
 var<uniform> material: Material;
 var base_color_texture: texture_2d<f32>;
 var base_color_sampler: sampler;
@@ -69,9 +68,14 @@ fn mesh_vertex(
     color0: vec4f,
     instance: u32,
 ) -> Vertex {
-    let at = placed(position, normal, instance);
+    var out = mesh_corner(placed(position, normal, instance), tangent, uv0, uv1, color0, instance);
+    out.clip = camera.clip_from_world * vec4f(out.world, 1.0);
+    return out;
+}
+
+/// All but where it is seen.
+fn mesh_corner(at: Placed, tangent: vec4f, uv0: vec2f, uv1: vec2f, color0: vec4f, instance: u32) -> Vertex {
     var out: Vertex;
-    out.clip = camera.clip_from_world * vec4f(at.world, 1.0);
     out.world = at.world;
     out.normal = at.normal;
     out.tangent = vec4f((world_from_mesh(instance) * vec4f(tangent.xyz, 0.0)).xyz, tangent.w);
@@ -123,7 +127,25 @@ fn sky_mirrored(f0: vec3f, roughness: f32, nv: f32) -> vec3f {
     return clamp((f0 * scale + bias) * (1.0 + f0 * (1.0 / max(scale + bias, 0.05) - 1.0)), vec3f(0.0), vec3f(1.0));
 }
 
-fn mesh_color(in: Vertex, is_front: bool, through: vec3f) -> vec4f {
+/// From a place to the eye; of a parallel view the eye is infinitely far behind the viewer.
+fn towards_eye(p: vec3f) -> vec3f {
+    return normalize(select(camera.position - p, world_from_eye_vector(vec3f(0.0, 0.0, 1.0)), camera.orthographic != 0u));
+}
+
+/// A place of a mesh, with its material.
+struct Surface {
+    base: vec4f,
+    emitted: vec3f,
+    metallic: f32,
+    roughness: f32,
+    occlusion: f32,
+    normal: vec3f,
+    // The triangles' own.
+    geometric: vec3f,
+}
+
+/// The material at a fragment, which is discarded where the material has holes.
+fn mesh_surface(in: Vertex, is_front: bool) -> Surface {
     let base = material.base_color_factor * in.color
         * textureSample(base_color_texture, base_color_sampler, uv(in, material.base_color_texcoord, material.base_color_transform));
     let rough_metal = textureSample(metallic_roughness_texture, metallic_roughness_sampler,
@@ -136,31 +158,38 @@ fn mesh_color(in: Vertex, is_front: bool, through: vec3f) -> vec4f {
     if material.alpha_mode == 1u && base.a < material.alpha_cutoff {
         discard;
     }
-    let alpha = select(1.0, base.a, material.alpha_mode == 2u);
-    let emitted = material.emissive_factor * material.emissive_strength * glow.rgb;
-    if material.unlit != 0u {
-        return vec4f(base.rgb * alpha, alpha);
-    }
-    let metallic = material.metallic_factor * rough_metal.b;
-    let roughness = clamp(material.roughness_factor * rough_metal.g, 0.04, 1.0);
-    let ratio = (material.ior - 1.0) / (material.ior + 1.0);
-    let f0 = mix(vec3f(ratio * ratio), base.rgb, metallic);
-    let normal = bumped(in, bump.xyz, select(-1.0, 1.0, is_front));
-    // Of a parallel view the eye is infinitely far behind the viewer.
-    let back = select(camera.position - in.world, world_from_eye_vector(vec3f(0.0, 0.0, 1.0)), camera.orthographic != 0u);
-    let to_eye = normalize(back);
+    let facing = select(-1.0, 1.0, is_front);
+    var out: Surface;
+    out.base = vec4f(base.rgb, select(1.0, base.a, material.alpha_mode == 2u));
+    out.emitted = material.emissive_factor * material.emissive_strength * glow.rgb;
+    out.metallic = material.metallic_factor * rough_metal.b;
+    out.roughness = clamp(material.roughness_factor * rough_metal.g, 0.04, 1.0);
+    out.occlusion = 1.0 + material.occlusion_strength * (occluded - 1.0);
+    out.normal = bumped(in, bump.xyz, facing);
+    out.geometric = normalize(in.normal) * facing;
+    return out;
+}
 
+/// What a surface in some light sends to an eye, premultiplied.
+fn mesh_color(surface: Surface, light: SurfaceLight, to_eye: vec3f) -> vec4f {
+    let base = surface.base.rgb;
+    let alpha = surface.base.a;
+    if material.unlit != 0u {
+        return vec4f(base * alpha, alpha);
+    }
+    let roughness = surface.roughness;
+    let ratio = (material.ior - 1.0) / (material.ior + 1.0);
+    let f0 = mix(vec3f(ratio * ratio), base, surface.metallic);
+    let normal = surface.normal;
     let nv = clamp(dot(normal, to_eye), 0.0, 1.0);
-    let occlusion = 1.0 + material.occlusion_strength * (occluded - 1.0);
     let mirrored = textureSampleLevel(specular_specular, linear_clamp, reflect(-to_eye, normal),
-        roughness * f32(params.specular_levels - 1u)).rgb;
+        roughness * f32(prefiltered.specular_levels - 1u)).rgb;
     let share = sky_mirrored(f0, roughness, nv);
     // What is mirrored at the surface is not scattered below it; only the part that is no metal scatters.
-    let scattered = (1.0 - sky_mirrored(vec3f(ratio * ratio), roughness, nv)) * base.rgb * (1.0 - metallic) / PI;
-    let from_sky = scattered * sky_irradiance(normal) + share * mirrored;
-    let geometric = normalize(in.normal) * select(-1.0, 1.0, is_front);
-    let sun_here = from_sun(in.world, normal, through) * select(0.0, 1.0, dot(geometric, -sun.direction) > 0.0);
-    let direct = (scattered + ggx(normal, to_eye, -sun.direction, roughness * roughness, f0)) * sun_here;
-    let color = from_sky * occlusion + direct + emitted;
+    let scattered = (1.0 - sky_mirrored(vec3f(ratio * ratio), roughness, nv)) * base * (1.0 - surface.metallic) / PI;
+    let from_sky = scattered * light.sky + share * light.mirrored * mirrored;
+    let from_sun = light.sun * select(0.0, 1.0, dot(surface.geometric, light.towards_sun) > 0.0);
+    let direct = (scattered + ggx(normal, to_eye, light.towards_sun, roughness * roughness, f0)) * from_sun;
+    let color = from_sky * surface.occlusion + direct + surface.emitted;
     return vec4f(min(color, vec3f(60000.0)) * alpha, alpha);
 }
