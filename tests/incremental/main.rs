@@ -4,6 +4,8 @@
 
 #[path = "../support/generate.rs"]
 mod generate;
+#[path = "../support/golden.rs"]
+mod golden;
 #[path = "../engine/harness.rs"]
 mod harness;
 mod peak;
@@ -46,24 +48,28 @@ fn main() -> ExitCode {
         shipped::imai2014::orbiting_runs_what_sees_the_camera,
         shipped::imai2014::a_camera_that_was_forgotten_is_caught,
         shipped::imai2014::a_parameter_runs_what_has_it_as_a_cause,
+        shipped::imai2014::another_parameter_runs_what_has_it_as_a_cause,
         shipped::imai2014::pictures_equal_those_of_full_runs,
         shipped::imai2014::shared_memory_holds_nothing_that_is_missed,
         shipped::imai2014::the_smallest_policy_holds_what_its_plan_says,
         shipped::imai2016::orbiting_runs_what_sees_the_camera,
         shipped::imai2016::a_camera_that_was_forgotten_is_caught,
         shipped::imai2016::a_parameter_runs_what_has_it_as_a_cause,
+        shipped::imai2016::another_parameter_runs_what_has_it_as_a_cause,
         shipped::imai2016::pictures_equal_those_of_full_runs,
         shipped::imai2016::shared_memory_holds_nothing_that_is_missed,
         shipped::imai2016::the_smallest_policy_holds_what_its_plan_says,
         shipped::iwasaki2006::orbiting_runs_what_sees_the_camera,
         shipped::iwasaki2006::a_camera_that_was_forgotten_is_caught,
         shipped::iwasaki2006::a_parameter_runs_what_has_it_as_a_cause,
+        shipped::iwasaki2006::another_parameter_runs_what_has_it_as_a_cause,
         shipped::iwasaki2006::pictures_equal_those_of_full_runs,
         shipped::iwasaki2006::shared_memory_holds_nothing_that_is_missed,
         shipped::iwasaki2006::the_smallest_policy_holds_what_its_plan_says,
         shipped::ripples::orbiting_runs_what_sees_the_camera,
         shipped::ripples::a_camera_that_was_forgotten_is_caught,
         shipped::ripples::a_parameter_runs_what_has_it_as_a_cause,
+        shipped::ripples::another_parameter_runs_what_has_it_as_a_cause,
         shipped::ripples::pictures_equal_those_of_full_runs,
         shipped::ripples::shared_memory_holds_nothing_that_is_missed,
         shipped::ripples::the_smallest_policy_holds_what_its_plan_says,
