@@ -43,6 +43,17 @@ struct Vertex {
     @location(5) color: vec4f,
 }
 
+/// What a mesh brings for each corner.
+struct Corner {
+    @location(0) position: vec3f,
+    @location(1) normal: vec3f,
+    @location(2) tangent: vec4f,
+    @location(3) uv0: vec2f,
+    @location(4) uv1: vec2f,
+    @location(5) color0: vec4f,
+    @location(6) instance: u32,
+}
+
 const PI = 3.14159265;
 
 var<uniform> prefiltered: Prefiltered;
@@ -59,29 +70,21 @@ var emissive_texture: texture_2d<f32>;
 var emissive_sampler: sampler;
 var specular_specular: texture_cube<f32>;
 
-fn mesh_vertex(
-    position: vec3f,
-    normal: vec3f,
-    tangent: vec4f,
-    uv0: vec2f,
-    uv1: vec2f,
-    color0: vec4f,
-    instance: u32,
-) -> Vertex {
-    var out = mesh_corner(placed(position, normal, instance), tangent, uv0, uv1, color0, instance);
+fn mesh_vertex(in: Corner) -> Vertex {
+    var out = mesh_corner(placed(in.position, in.normal, in.instance), in);
     out.clip = camera.clip_from_world * vec4f(out.world, 1.0);
     return out;
 }
 
 /// All but where it is seen.
-fn mesh_corner(at: Placed, tangent: vec4f, uv0: vec2f, uv1: vec2f, color0: vec4f, instance: u32) -> Vertex {
+fn mesh_corner(at: Placed, in: Corner) -> Vertex {
     var out: Vertex;
     out.world = at.world;
     out.normal = at.normal;
-    out.tangent = vec4f((world_from_mesh(instance) * vec4f(tangent.xyz, 0.0)).xyz, tangent.w);
-    out.uv0 = uv0;
-    out.uv1 = uv1;
-    out.color = color0;
+    out.tangent = vec4f((world_from_mesh(in.instance) * vec4f(in.tangent.xyz, 0.0)).xyz, in.tangent.w);
+    out.uv0 = in.uv0;
+    out.uv1 = in.uv1;
+    out.color = in.color0;
     return out;
 }
 

@@ -7,16 +7,8 @@ var water_z: texture_2d<f32>;
 var<storage, read> eye: array<f32>;
 
 @vertex
-fn place(
-    @location(0) position: vec3f,
-    @location(1) normal: vec3f,
-    @location(2) tangent: vec4f,
-    @location(3) uv0: vec2f,
-    @location(4) uv1: vec2f,
-    @location(5) color0: vec4f,
-    @location(6) instance: u32,
-) -> Vertex {
-    return mesh_vertex(position, normal, tangent, uv0, uv1, color0, instance);
+fn place(in: Corner) -> Vertex {
+    return mesh_vertex(in);
 }
 
 @fragment

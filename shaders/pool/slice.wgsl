@@ -18,16 +18,8 @@ struct Image {
 var<uniform> params: Params;
 
 @vertex
-fn place(
-    @location(0) position: vec3f,
-    @location(1) normal: vec3f,
-    @location(2) tangent: vec4f,
-    @location(3) uv0: vec2f,
-    @location(4) uv1: vec2f,
-    @location(5) color0: vec4f,
-    @location(6) instance: u32,
-) -> Vertex {
-    let at = placed(position, normal, instance);
+fn place(in: Corner) -> Vertex {
+    let at = placed(in.position, in.normal, in.instance);
     let upper = plane_height(params.slice, params.planes);
     let lower = plane_height(params.slice + 1u, params.planes);
     let at_uv = slice_uv(at.world, slice_view(params.camera_position), upper);
@@ -35,7 +27,7 @@ fn place(
     // what is above or below is cut off.
     let spare = 0.15 * (upper - lower);
     let depth = (at.world.y - lower + spare) / (upper - lower + 2.0 * spare);
-    var out = mesh_corner(at, tangent, uv0, uv1, color0, instance);
+    var out = mesh_corner(at, in);
     out.clip = vec4f(at_uv.x * 2.0 - 1.0, 1.0 - 2.0 * at_uv.y, depth, 1.0);
     return out;
 }
