@@ -3,11 +3,10 @@
 
 use meniscus::engine::{Engine, Frame, Policy, StepInfo};
 use meniscus::graph::value::Value;
-use meniscus::plan::model::{InputInfo, ObjectRef, Plan};
+use meniscus::plan::model::{InputInfo, Plan};
 
 use crate::planning::Test;
-use crate::shipped::{Shipped, alike};
-use crate::world::objects;
+use crate::shipped::{Shipped, alike, reached_by_order};
 
 /// Of the largest live set, what the frame may hold at once.
 const MOST: f64 = 1.3;
@@ -26,18 +25,10 @@ fn frame(shipped: &mut Shipped<'_>, policy: Policy) -> (Outputs, u64) {
     let runner = shipped.skips();
     let plan = runner.plan();
     assert!(report.submissions as usize > plan.memory.cuts(policy).len(), "{policy:?}: each cut hands over");
-    let ((ordered, others), peak) = (outputs(plan), runner.peak_bytes());
+    let outputs = plan.outputs.iter().map(|output| output.object);
+    let (others, ordered): (Vec<_>, Vec<_>) = outputs.partition(|o| reached_by_order(plan, shipped.engine, *o));
+    let peak = runner.peak_bytes();
     (Outputs { ordered: shipped.read(&ordered), others: shipped.texels(&others) }, peak)
-}
-
-/// Outputs that the order of atomics does not reach, and those that it does.
-fn outputs(plan: &Plan) -> (Vec<ObjectRef>, Vec<ObjectRef>) {
-    let reached = |object: ObjectRef| {
-        let mut written =
-            plan.passes.iter().filter(|p| p.unordered).flat_map(|p| p.accesses.iter().filter(|a| a.write));
-        written.any(|access| objects(plan, access.object).iter().any(|id| objects(plan, object).contains(id)))
-    };
-    plan.outputs.iter().map(|output| output.object).partition(|object| !reached(*object))
 }
 
 pub fn holds_what_its_plan_says(engine: &mut Engine, name: &str) {

@@ -4,7 +4,7 @@ use meniscus::format::{SampleKind, sample_kind};
 use meniscus::plan::model::{ObjectId, ObjectKind, Origin, Pass, PassKind, Plan, Policy, View};
 use meniscus::shader::reflect::{Scalar, TextureDimension, Type};
 
-use crate::world::objects;
+use crate::planning::objects;
 
 /// Fills each object that shares memory under any policy with NaN, or what comes closest, before
 /// the first pass that touches it.

@@ -7,8 +7,9 @@ use meniscus::plan::changes::{Cause, Reason};
 use meniscus::plan::model::{ObjectId, Origin, Plan, Slot};
 
 use crate::generate::{Generated, grow};
+use crate::planning::objects;
 use crate::poison;
-use crate::world::{Alter, Numbers, World, objects};
+use crate::world::{Alter, Numbers, World};
 
 /// `MENISCUS_STEPS=10000` in the environment looks further, `MENISCUS_SEED=62` begins with that graph.
 const STEPS: u32 = 300;

@@ -6,6 +6,7 @@ use meniscus::graph::value::Value;
 use meniscus::plan::model::{ObjectId, ObjectKind, ObjectRef, Origin, Plan, Request};
 
 use crate::generate::{GIVEN, Generated, PICTURE};
+use crate::planning::objects;
 
 /// What frames and planners are told.
 #[derive(Clone, Debug)]
@@ -179,13 +180,6 @@ fn run(engine: &Engine, runner: &mut Runner, now: &Now, only: Option<&[bool]>) -
 
 fn input(plan: &Plan, name: &str) -> Option<ObjectId> {
     plan.objects.iter().position(|o| o.origin == Origin::Input(name.into()))
-}
-
-pub fn objects(plan: &Plan, object: ObjectRef) -> Vec<ObjectId> {
-    match object {
-        ObjectRef::Fixed(id) => vec![id],
-        ObjectRef::Ring { ring, .. } => plan.rings[ring].objects.clone(),
-    }
 }
 
 /// The bytes of an object, of all mips of a texture; none of what cannot be read.

@@ -3,12 +3,9 @@
 use std::collections::BTreeSet;
 
 use meniscus::format::TextureFormat;
-use meniscus::plan::model::{
-    Argument, ArgumentKind, Dispatch, Geometry, InputInfo, ObjectKind, PassKind, Plan, Texture,
-};
-use wgpu_types::TextureUsages;
+use meniscus::plan::model::{Argument, ArgumentKind, InputInfo, ObjectKind, PassKind, Plan};
 
-use crate::planning::{Test, pass, paths};
+use crate::planning::{Test, pass, paths, texture};
 
 const LIST: &str = r#""list": Counted(capacity: 50), "a": Buffer(items: 64), "b": Buffer(items: 64), "o": Texture(format: Rgba16Float, size: (8, 8))"#;
 
@@ -29,28 +26,17 @@ fn arguments(plan: &Plan, at: usize) -> &[Argument] {
 
 /// The slot that a pass takes its arguments from.
 fn slot(plan: &Plan, at: usize) -> u32 {
-    match &plan.passes[at].kind {
-        PassKind::Compute { dispatch: Dispatch::Indirect { slot }, .. } => *slot,
-        PassKind::Draw(draw) => match &draw.geometry {
-            Geometry::Indirect { slot, .. } => *slot,
-            other => panic!("{other:?} is not indirect"),
-        },
-        other => panic!("{other:?} is not indirect"),
-    }
+    plan.passes[at].kind.slot().unwrap_or_else(|| panic!("{} is not indirect", plan.passes[at].path))
 }
 
 /// Every slot is written by one pass at least before the one pass that reads it.
 fn slots_are_fed(plan: &Plan) {
     let (mut written, mut read) = (BTreeSet::new(), BTreeSet::new());
-    for (p, pass) in plan.passes.iter().enumerate() {
+    for pass in &plan.passes {
         match &pass.kind {
             PassKind::Settle { arguments, .. } => written.extend(arguments.iter().map(|a| a.slot)),
             PassKind::Arguments { slot, .. } => _ = written.insert(*slot),
-            PassKind::Compute { dispatch: Dispatch::Indirect { .. }, .. } => assert!(read.insert(slot(plan, p))),
-            PassKind::Draw(draw) if matches!(draw.geometry, Geometry::Indirect { .. }) => {
-                assert!(read.insert(slot(plan, p)))
-            }
-            _ => {}
+            kind => kind.slot().into_iter().for_each(|slot| assert!(read.insert(slot))),
         }
         assert!(read.is_subset(&written), "{} reads a slot that nothing wrote", pass.path);
     }
@@ -220,16 +206,7 @@ fn what_is_handed_in_is_made_for_what_the_engine_does_with_it() {
         outputs: ["out", "cleared", "filled", "drawn", "other"],
     )"#;
     let buffer = InputInfo::Buffer { items: 64, stride: 4 };
-    let texture = InputInfo::Texture(Texture {
-        format: TextureFormat::Rgba8Unorm,
-        width: 8,
-        height: 8,
-        layers: 1,
-        is_3d: false,
-        mips: 1,
-        samples: 1,
-        usages: TextureUsages::empty(),
-    });
+    let texture = InputInfo::Texture(texture(TextureFormat::Rgba8Unorm));
     let test =
         ["cleared", "filled", "read"].iter().fold(Test::new(graph), |test, name| test.input(name, buffer.clone()));
     let test = test.input("copied", texture.clone()).input("drawn", texture);

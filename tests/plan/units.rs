@@ -3,10 +3,9 @@
 use std::collections::BTreeSet;
 
 use meniscus::format::TextureFormat;
-use meniscus::plan::model::{Causes, InputInfo, Plan, Texture};
-use wgpu_types::TextureUsages;
+use meniscus::plan::model::{Causes, InputInfo, Plan};
 
-use crate::planning::{Test, pass};
+use crate::planning::{Test, pass, texture};
 
 fn unit(plan: &Plan, path: &str) -> usize {
     plan.passes[pass(plan, path)].unit
@@ -48,16 +47,7 @@ fn each_kind() -> Plan {
         ],
         outputs: ["o"],
     )"#;
-    let picture = Texture {
-        format: TextureFormat::Rgba16Float,
-        width: 8,
-        height: 8,
-        layers: 1,
-        is_3d: false,
-        mips: 1,
-        samples: 1,
-        usages: TextureUsages::empty(),
-    };
+    let picture = texture(TextureFormat::Rgba16Float);
     let test = Test::new(graph).input("camera", InputInfo::Camera).input("picture", InputInfo::Texture(picture));
     ["eye", "clock", "wide", "sized", "chosen", "asked", "seen", "m2"]
         .iter()

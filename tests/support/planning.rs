@@ -4,11 +4,14 @@
 
 use meniscus::diagnostic::{Diagnostics, Sources, Style, render_all};
 use meniscus::files::MemoryFiles;
+use meniscus::format::TextureFormat;
 use meniscus::graph::value::Value;
 use meniscus::plan::instantiate;
-use meniscus::plan::model::{Binding, Bound, InputInfo, ObjectId, ObjectRef, PassKind, Plan, Request, ShaderUse, View};
+use meniscus::plan::model::{
+    Binding, Bound, InputInfo, ObjectId, ObjectRef, PassKind, Plan, Request, ShaderUse, Texture, View,
+};
 use meniscus::program;
-use wgpu_types::{Features, Limits};
+use wgpu_types::{Features, Limits, TextureUsages};
 
 /// Shaders that tests share: `dst` is written, `src` is read.
 const SHADERS: &[(&str, &str)] = &[
@@ -206,5 +209,19 @@ pub fn objects(plan: &Plan, object: ObjectRef) -> Vec<ObjectId> {
     match object {
         ObjectRef::Fixed(id) => vec![id],
         ObjectRef::Ring { ring, .. } => plan.rings[ring].objects.clone(),
+    }
+}
+
+/// A flat picture of eight by eight texels.
+pub fn texture(format: TextureFormat) -> Texture {
+    Texture {
+        format,
+        width: 8,
+        height: 8,
+        layers: 1,
+        is_3d: false,
+        mips: 1,
+        samples: 1,
+        usages: TextureUsages::empty(),
     }
 }
