@@ -1,8 +1,7 @@
 // Meshes that blend, before or behind the liquid, in sun and sky light, the sun's faded by the water.
 #import "blended/liquid.wgsl"
-#import "dry_scene/mesh_light.wgsl"
+#import "dry_scene/lit_mesh.wgsl"
 #import "dry_scene/through_thickness.wgsl"
-#import "lib/mesh_surface.wgsl"
 
 @vertex
 fn place(in: Corner) -> Vertex {
@@ -11,7 +10,5 @@ fn place(in: Corner) -> Vertex {
 
 @fragment
 fn shade(in: Vertex, @builtin(front_facing) is_front: bool) -> Shown {
-    let surface = mesh_surface(in, is_front);
-    let light = dry_light(in.world, surface.normal, through_water(in.world));
-    return in_liquid(mesh_color(surface, light, towards_eye(in.world)), in.clip);
+    return in_liquid(lit_mesh(in, is_front), in.clip);
 }

@@ -9,12 +9,6 @@ struct Params {
     cast_radius_m: f32,
 }
 
-struct Vertex {
-    @builtin(position) clip: vec4f,
-    @location(0) uv: vec2f,
-    @location(1) alpha: f32,
-}
-
 var<uniform> params: Params;
 var<uniform> sun: Light;
 
@@ -36,7 +30,5 @@ fn seen_by_sun(
 
 @fragment
 fn holes(in: Vertex) {
-    if is_hole(in.uv, in.alpha) {
-        discard;
-    }
+    discard_holes(in);
 }

@@ -1,7 +1,6 @@
 // Meshes in sun and sky light, the sun's bent by the water.
-#import "dry_scene/mesh_light.wgsl"
+#import "dry_scene/lit_mesh.wgsl"
 #import "dry_scene/through_caustics.wgsl"
-#import "lib/mesh_surface.wgsl"
 
 @vertex
 fn place(in: Corner) -> Vertex {
@@ -10,6 +9,5 @@ fn place(in: Corner) -> Vertex {
 
 @fragment
 fn shade(in: Vertex, @builtin(front_facing) is_front: bool) -> @location(0) vec4f {
-    let surface = mesh_surface(in, is_front);
-    return mesh_color(surface, dry_light(in.world, surface.normal, through_water(in.world)), towards_eye(in.world));
+    return lit_mesh(in, is_front);
 }

@@ -3,12 +3,6 @@
 #import "lib/mesh_place.wgsl"
 #import "lib/mesh_shadow.wgsl"
 
-struct Vertex {
-    @builtin(position) clip: vec4f,
-    @location(0) uv: vec2f,
-    @location(1) alpha: f32,
-}
-
 @vertex
 fn place(
     @location(0) position: vec3f,
@@ -26,7 +20,5 @@ fn place(
 
 @fragment
 fn holes(in: Vertex) {
-    if is_hole(in.uv, in.alpha) {
-        discard;
-    }
+    discard_holes(in);
 }
