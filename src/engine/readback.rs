@@ -5,7 +5,7 @@ use std::sync::mpsc;
 
 use wgpu_types::TextureFormat;
 
-use super::bind::{depth_needs_draw, layer_view, resolve};
+use super::bind::{depth_needs_draw, layer_view};
 use super::errors;
 use super::kernels;
 use super::mips::padded_row;
@@ -48,7 +48,7 @@ impl Runner {
         mip: u32,
         layer: Option<u32>,
     ) -> Result<TextureData, Diagnostic> {
-        let id = resolve(&self.plan, &self.rotation, object);
+        let id = self.resolved(object)?;
         let about = &self.plan.objects[id];
         let fail = |why: &str| {
             Diagnostic::error(Code::OUT_OF_RANGE, format!("`{}` {why}", about.path)).at(about.span, "declared here")
@@ -59,11 +59,17 @@ impl Runner {
             return Err(fail("is never stored: no pass needs it after it was drawn")
                 .hint("ask for it when planning, by `roots`"));
         }
-        let all = if planned.is_3d { (planned.layers >> mip).max(1) } else { planned.layers };
-        let layers = layer.map_or(0..all, |l| l..l + 1);
-        if mip >= planned.mips || layers.end > all {
-            return Err(fail(&format!("has {} mips and there {all} layers", planned.mips)));
+        if mip >= planned.mips {
+            return Err(fail(&format!("has {} mips, and no mip {mip}", planned.mips)));
         }
+        let all = if planned.is_3d { (planned.layers >> mip).max(1) } else { planned.layers };
+        let layers = match layer {
+            Some(layer) if layer >= all => {
+                return Err(fail(&format!("has {all} layers in mip {mip}, and no layer {layer}")));
+            }
+            Some(layer) => layer..layer + 1,
+            None => 0..all,
+        };
         if planned.samples > 1 {
             return Err(fail("has several samples").hint("resolve it into another texture, and read that"));
         }
@@ -80,7 +86,7 @@ impl Runner {
     /// # Errors
     /// If it is no buffer, or the device fails.
     pub fn read_buffer(&self, engine: &Engine, object: ObjectRef) -> Result<Vec<u8>, Diagnostic> {
-        let id = resolve(&self.plan, &self.rotation, object);
+        let id = self.resolved(object)?;
         let about = &self.plan.objects[id];
         let (ObjectKind::Buffer(planned), Some(buffer)) = (&about.kind, self.pool.buffer(id)) else {
             return Err(Diagnostic::error(Code::OUT_OF_RANGE, format!("`{}` is no buffer with content", about.path))

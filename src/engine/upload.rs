@@ -51,11 +51,15 @@ impl Runner {
         self.known(object)?;
         self.own(engine, object)?;
         let texture = self.pool.texture(object).ok_or_else(|| self.unfit(object, "is no texture"))?;
+        let mips = texture.mip_level_count();
+        if mip >= mips {
+            return Err(self.unfit(object, &format!("has {mips} mips, and no mip {mip}")));
+        }
         let (width, height) = ((texture.width() >> mip).max(1), (texture.height() >> mip).max(1));
         let format = texture.format();
         let size = texel::size(format).ok_or_else(|| self.unfit(object, "has a format that cannot be uploaded"))?;
         let (row, expected) = (width as usize * size, width as usize * height as usize * size);
-        if bytes.len() != expected || mip >= texture.mip_level_count() {
+        if bytes.len() != expected {
             let message = format!("takes {expected} bytes for mip {mip}, not {}", bytes.len());
             return Err(self.unfit(object, &message));
         }
@@ -87,7 +91,7 @@ impl Runner {
     /// If one of them is nothing like the other, or the other has no memory yet.
     pub fn share(&mut self, object: ObjectId, from: &Runner, source: ObjectRef) -> Result<(), Diagnostic> {
         self.known(object)?;
-        let id = resolve(&from.plan, &from.rotation, source);
+        let id = from.resolved(source)?;
         let Some(memory) = from.pool.memory(id) else {
             return Err(self.unfit(object, &format!("cannot take `{}`, which is empty", from.plan.objects[id].path)));
         };
@@ -194,12 +198,12 @@ impl Runner {
     /// The texture that a reference stands for now, for those who show or use it on the same
     /// device.
     pub fn texture(&self, object: ObjectRef) -> Option<&wgpu::Texture> {
-        self.pool.texture(resolve(&self.plan, &self.rotation, object))
+        self.pool.texture(self.resolved(object).ok()?)
     }
 
     /// The buffer that a reference stands for now.
     pub fn buffer(&self, object: ObjectRef) -> Option<&wgpu::Buffer> {
-        self.pool.buffer(resolve(&self.plan, &self.rotation, object))
+        self.pool.buffer(self.resolved(object).ok()?)
     }
 
     fn share_memory(&mut self, object: ObjectId, memory: Memory, source: Content) -> Result<(), Diagnostic> {
@@ -269,9 +273,24 @@ impl Runner {
         if object < self.plan.objects.len() {
             return Ok(());
         }
-        let (graph, count) = (self.plan.graph.display(), self.plan.objects.len());
-        let message = format!("there is no object {object} in the plan of {graph}, which has {count}");
-        Err(Diagnostic::error(Code::BAD_PARAMETER, message).hint("ask `plan.needs(path)` again after each plan"))
+        Err(self.unknown(&format!("object {object}"), self.plan.objects.len()))
+    }
+
+    /// The object that a reference stands for now; one of another plan may stand for nothing here.
+    pub(super) fn resolved(&self, object: ObjectRef) -> Result<ObjectId, Diagnostic> {
+        match object {
+            ObjectRef::Fixed(id) => self.known(id)?,
+            ObjectRef::Ring { ring, .. } if ring >= self.plan.rings.len() => {
+                return Err(self.unknown(&format!("ring {ring}"), self.plan.rings.len()));
+            }
+            ObjectRef::Ring { .. } => {}
+        }
+        Ok(resolve(&self.plan, &self.rotation, object))
+    }
+
+    fn unknown(&self, what: &str, count: usize) -> Diagnostic {
+        let message = format!("there is no {what} in the plan of {}, which has {count}", self.plan.graph.display());
+        Diagnostic::error(Code::BAD_PARAMETER, message).hint("ask `plan.needs(path)` again after each plan")
     }
 
     fn planned(&self, object: ObjectId) -> String {

@@ -144,16 +144,31 @@ pub fn what_is_not_in_the_plan_is_told(engine: &mut Engine) {
         runner.share_texture(99, &theirs).unwrap_err(),
         runner.upload_buffer(engine, 99, &[0; 4]).unwrap_err(),
         runner.upload_texture(engine, 99, 0, 0, &[0; 64]).unwrap_err(),
+        runner.read_texture(engine, ObjectRef::Fixed(99), 0, None).unwrap_err(),
+        runner.read_buffer(engine, ObjectRef::Fixed(99)).unwrap_err(),
     ];
     for refused in refused {
         assert!(refused.message.contains("no object 99") && refused.hints[0].contains("needs"), "{refused:?}");
     }
     runner.mark_changed(99);
+    assert!(runner.texture(ObjectRef::Fixed(99)).is_none());
+    let ring = ObjectRef::Ring { ring: 9, index: 0 };
+    assert!(runner.buffer(ring).is_none());
+    let refused = runner.read_buffer(engine, ring).unwrap_err();
+    assert!(refused.message.contains("no ring 9"), "{refused:?}");
     let layer = runner.upload_texture(engine, picture, 0, 1, &[0; 64]).unwrap_err();
     assert!(layer.message.contains("no layer 1"), "{layer:?}");
+    let mip = runner.upload_texture(engine, picture, u32::MAX, 0, &[0; 64]).unwrap_err();
+    assert!(mip.message.contains("no mip 4294967295"), "{mip:?}");
     runner.upload_texture(engine, picture, 0, 0, &[0; 64]).unwrap();
     run(engine, &mut runner);
     assert_eq!(words(engine, &runner, out), [0]);
+    let picture = ObjectRef::Fixed(picture);
+    for (mip, layer, said) in [(32, None, "no mip 32"), (0, Some(u32::MAX), "no layer 4294967295")] {
+        let refused = runner.read_texture(engine, picture, mip, layer).unwrap_err();
+        assert!(refused.message.contains(said), "{refused:?}");
+    }
+    runner.read_texture(engine, picture, 0, Some(0)).unwrap();
 }
 
 /// Dropped, a texture lives on while it is in use; destroyed, it is told, and what was drawn last
