@@ -12,6 +12,8 @@ mod files;
 mod golden;
 #[path = "support/project.rs"]
 mod project;
+#[path = "cli/stepping.rs"]
+mod stepping;
 #[path = "cli/texts.rs"]
 mod texts;
 

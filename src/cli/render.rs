@@ -15,7 +15,7 @@ use super::table;
 use crate::diagnostic::{Code, Diagnostic, Diagnostics, Sources};
 use crate::files::DiskFiles;
 use crate::host::picture::PictureKind;
-use crate::host::{Cache, Player, Session, When, load, not_in_steps};
+use crate::host::{Cache, Player, Session, When, load};
 
 pub fn run(args: &RenderArgs) -> Exit {
     let mut sources = Sources::new();
@@ -130,15 +130,16 @@ fn draw(
     let mut notes = Diagnostics::new();
     let bar = progress(pictures.len());
     let tracks = session.tracks().to_vec();
-    notes.extend(session.plan().map(|plan| not_in_steps(plan, &tracks)).unwrap_or_default());
-    let mut player = pictures.first().map(|(_, first)| Player::new(&tracks, *first, DiskFiles));
+    let Some(mut player) = pictures.first().map(|(_, first)| Player::new(&tracks, *first, DiskFiles)) else {
+        return Ok(notes);
+    };
     for (path, when) in pictures {
         let output = Output::reserve(path)?;
-        let inputs = player.as_mut().map(|player| player.inputs(*when, &mut notes)).unwrap_or_default();
-        clock.lap("waiting for a frame's files");
-        notes.extend(session.feed(inputs).map_err(|e| with(&notes, e))?);
-        clock.lap("building");
-        let drawn = session.draw(when.moment(tracks.first()), kind == PictureKind::Png)?;
+        if !session.steps_see_files() {
+            session.turn_to(*when, &mut player, &mut notes).map_err(|e| with(&notes, e))?;
+            clock.lap("a frame's files");
+        }
+        let drawn = session.draw_at(*when, &mut player, kind == PictureKind::Png).map_err(|e| with(&notes, e))?;
         notes.extend(drawn.diagnostics);
         clock.lap("drawing");
         output.write(&session.encoded(kind, args.transparent)?)?;

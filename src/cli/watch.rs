@@ -11,7 +11,7 @@ use crate::diagnostic::{Code, Diagnostic, Diagnostics, Sources};
 use crate::engine::any_device_gone;
 use crate::files::DiskFiles;
 use crate::host::picture::PictureKind;
-use crate::host::{Cache, Job, Session, load, not_in_steps, renderable};
+use crate::host::{Cache, Job, Player, Session, load, renderable};
 use crate::reload::{Change, Watch};
 
 pub fn run(args: &WatchArgs) -> Exit {
@@ -114,12 +114,16 @@ impl Follower<'_> {
         let began = Instant::now();
         let built = self.session.build(content)?;
         found.extend(built.diagnostics);
-        let told = self.session.plan().map(|plan| not_in_steps(plan, self.session.tracks()));
-        found.extend(told.unwrap_or_default());
         let building = began.elapsed();
         let began = Instant::now();
-        let at = self.job.when.moment(self.session.tracks().first());
-        let drawn = self.session.draw(at, self.kind == PictureKind::Png)?;
+        let (when, presents) = (self.job.when, self.kind == PictureKind::Png);
+        let drawn = if self.session.steps_see_files() {
+            self.session.reset()?;
+            let mut player = Player::new(self.session.tracks(), when, DiskFiles);
+            self.session.draw_at(when, &mut player, presents)?
+        } else {
+            self.session.draw(when.moment(self.session.tracks().first()), presents)?
+        };
         found.extend(drawn.diagnostics);
         let bytes = self.session.encoded(self.kind, self.args.transparent)?;
         Output::reserve(&self.args.output)?.write(&bytes)?;

@@ -8,7 +8,7 @@ use super::moving::Moving;
 use super::picture::{self, PictureKind, Texels};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::engine::{Frame, Report, Runner, TextureData};
-use crate::plan::model::{Object, ObjectKind, ObjectRef, Plan};
+use crate::plan::model::{Object, ObjectKind, ObjectRef};
 use crate::plan::stats::Statistic;
 
 /// Frames a second, where nobody says.
@@ -49,13 +49,13 @@ pub struct Drawn {
 
 impl Session {
     /// Runs all steps up to a moment from the start, then draws it; `present` also turns the light
-    /// into a picture for screens.
+    /// into a picture for screens. All steps see what shows now: see [`Session::draw_at`].
     ///
     /// # Errors
     /// If the device refuses something or is lost, or a counted buffer cannot get the room that it
     /// needs.
     pub fn draw(&mut self, moment: Moment, present: bool) -> Result<Drawn, Diagnostics> {
-        self.draw_by(present, moment, |session| session.run_from_the_start(moment))
+        self.draw_by(present, moment, |session, notes| session.come_to(moment, None, true, notes))
     }
 
     /// Draws a moment after the one that was drawn last: steps go on from there.
@@ -64,27 +64,50 @@ impl Session {
     /// As [`Session::draw`].
     pub fn draw_next(&mut self, moment: Moment, present: bool) -> Result<Drawn, Diagnostics> {
         let mut is_new = true;
-        self.draw_by(present, moment, |session| {
+        self.draw_by(present, moment, |session, _| {
             let due = session.steps_due(moment.time_s, std::mem::take(&mut is_new), u32::MAX);
-            session.run_moment(moment, &due.steps)
+            session.run_moment(moment, &due.steps, None).map(|()| true)
         })
     }
 
-    fn draw_by(
+    /// Draws by what runs the graph for a moment, and tells whether that is to be repeated with more room.
+    pub(super) fn draw_by(
         &mut self,
         present: bool,
         moment: Moment,
-        mut run: impl FnMut(&mut Self) -> Result<(), Diagnostics>,
+        run: impl FnMut(&mut Self, &mut Diagnostics) -> Result<bool, Diagnostics>,
     ) -> Result<Drawn, Diagnostics> {
-        let began = Instant::now();
-        let mut notes = Diagnostics::new();
+        let (began, mut notes) = (Instant::now(), Diagnostics::new());
+        match self.draw_until_whole(present, moment, &mut notes, run) {
+            Ok((reports, repeats)) => {
+                let drawing_ms = began.elapsed().as_secs_f64() * 1e3;
+                Ok(Drawn { reports, repeats, drawing_ms, diagnostics: notes })
+            }
+            Err(found) => {
+                // What was found before stays before what ended the work.
+                notes.extend(found);
+                Err(notes)
+            }
+        }
+    }
+
+    fn draw_until_whole(
+        &mut self,
+        present: bool,
+        moment: Moment,
+        notes: &mut Diagnostics,
+        mut run: impl FnMut(&mut Self, &mut Diagnostics) -> Result<bool, Diagnostics>,
+    ) -> Result<(Vec<Report>, usize), Diagnostics> {
         for repeats in 0..=MOST_REPEATS {
-            run(self)?;
+            if !run(self, notes)? {
+                self.grow()?;
+                continue;
+            }
             if present {
                 self.run_present(moment)?;
             }
             let report = finish(&mut self.graph, &self.engine)?;
-            if self.has_grown(&report, &mut notes)? {
+            if self.has_grown(&report, notes)? {
                 self.grow()?;
                 continue;
             }
@@ -93,32 +116,21 @@ impl Session {
             if present {
                 reports.push(finish(&mut self.present, &self.engine)?);
             }
-            let drawing_ms = began.elapsed().as_secs_f64() * 1e3;
-            return Ok(Drawn { reports, repeats, drawing_ms, diagnostics: notes });
+            return Ok((reports, repeats));
         }
         let endless = format!("counted buffers still have too little room after {MOST_REPEATS} repeats");
         Err(Diagnostic::error(Code::OVERFLOW, endless).into())
     }
 
-    fn run_from_the_start(&mut self, moment: Moment) -> Result<(), Diagnostics> {
-        let Some(runner) = &mut self.graph else { return Err(nothing().into()) };
-        if !runner.plan().steps.is_empty() {
-            runner.reset_state(&self.engine)?;
-        }
-        let is_per_frame = runner.plan().steps.iter().any(|s| s.rate.is_none());
-        // Steps at a rate only count time; those once a frame need each frame before.
-        let first = if is_per_frame { 0 } else { moment.frame };
-        for frame in first..=moment.frame {
-            let Some(runner) = &self.graph else { return Err(nothing().into()) };
-            let now = if frame == moment.frame { moment } else { Moment::at_frame(frame) };
-            let steps = steps_until(runner.plan(), runner.steps_done(), now, first)?;
-            self.run_moment(now, &steps)?;
-        }
-        Ok(())
+    /// Waits for what runs, and tells whether counted buffers had too little room, which they get when the graph
+    /// is built again.
+    pub(super) fn lacked_room(&mut self, notes: &mut Diagnostics) -> Result<bool, Diagnostics> {
+        let report = finish(&mut self.graph, &self.engine)?;
+        self.has_grown(&report, notes)
     }
 
-    /// Runs the graph for one moment, with so many of each of its `Steps`.
-    fn run_moment(&mut self, now: Moment, steps: &[u32]) -> Result<(), Diagnostics> {
+    /// Runs the graph for one moment, with so many of each of its `Steps`; `only` some passes, or all.
+    pub(super) fn run_moment(&mut self, now: Moment, steps: &[u32], only: Option<&[bool]>) -> Result<(), Diagnostics> {
         let (Some(content), Some(runner)) = (&mut self.content, &mut self.graph) else { return Err(nothing().into()) };
         if let Some(camera) = content.viewpoint.as_ref().and_then(|viewpoint| viewpoint.at(now.time_s)) {
             content.camera = camera;
@@ -131,7 +143,7 @@ impl Session {
             frame: now.frame,
             steps,
             live: &|name, step| live.at(name, step),
-            only: None,
+            only,
         };
         let (inputs, camera, standing) = (&content.inputs, &content.camera, &mut self.standing);
         Moving { inputs, camera, standing }.run(&self.engine, runner, &frame, Runner::advance)
@@ -305,20 +317,4 @@ pub(super) fn nothing() -> Diagnostic {
 
 fn finish(runner: &mut Option<Runner>, engine: &crate::engine::Engine) -> Result<Report, Diagnostic> {
     runner.as_mut().ok_or_else(nothing)?.finish(engine)
-}
-
-/// How many steps each `Steps` runs in a frame: at a rate, those that the time asks for and that
-/// were not done; else one, from the frame `first` on.
-fn steps_until(plan: &Plan, done: &[u64], now: Moment, first: u64) -> Result<Vec<u32>, Diagnostic> {
-    let wanted = |(steps, done): (&crate::plan::model::Steps, &u64)| {
-        let until = match steps.rate {
-            Some(rate) => (now.time_s * rate).floor().max(0.0) as u64,
-            None => now.frame - first.min(now.frame) + 1,
-        };
-        u32::try_from(until.saturating_sub(*done)).map_err(|_| {
-            let message = format!("`{}` would run {until} steps until {} s", steps.path, now.time_s);
-            Diagnostic::error(Code::USAGE, message).hint("ask for an earlier time")
-        })
-    };
-    plan.steps.iter().zip(done).map(wanted).collect()
 }

@@ -23,6 +23,7 @@ pub mod player;
 pub mod sequence;
 mod source;
 mod state;
+mod stepping;
 mod viewpoint;
 
 pub use crate::engine::Due;
@@ -35,6 +36,6 @@ pub use inputs::Input;
 pub use live::{Live, Read};
 pub use load::{Job, Loaded, load};
 pub use player::Player;
-pub use sequence::{Frames, Track, When, not_in_steps};
+pub use sequence::{Frames, Track, When};
 pub(crate) use source::named;
 pub use source::renderable;

@@ -20,7 +20,7 @@ pub(super) struct Moving<'a> {
 
 impl Moving<'_> {
     /// Runs a frame. Steps that see meshes move run one at a time, each with these where they are
-    /// then; all others run as the engine does them, by `run`.
+    /// then, after those that come before them in the program; all others run as the engine does them, by `run`.
     pub fn run<T>(
         &mut self,
         engine: &Engine,
@@ -28,43 +28,45 @@ impl Moving<'_> {
         frame: &Frame<'_>,
         run: impl FnOnce(&mut Runner, &Engine, &Frame<'_>) -> Result<T, Diagnostics>,
     ) -> Result<T, Diagnostics> {
-        let seeing = self.seeing_steps(runner.plan());
+        let turns = self.turns(runner.plan());
         // Most see none, and their frames allocate nothing.
-        let mut left = if seeing.is_empty() { Vec::new() } else { frame.steps.to_vec() };
-        for index in &seeing {
-            let index = *index;
-            let due = left.get_mut(index).map_or(0, std::mem::take);
-            for _ in 0..due {
-                self.step(engine, runner, frame, index)?;
+        let mut left = if turns.is_empty() { Vec::new() } else { frame.steps.to_vec() };
+        for (index, sees) in &turns {
+            let due = left.get_mut(*index).map_or(0, std::mem::take);
+            let (times, count) = if *sees { (due, 1) } else { (due.min(1), due) };
+            for _ in 0..times {
+                self.step(engine, runner, frame, (*index, count))?;
             }
         }
         self.move_to(engine, runner, frame.time)?;
         self.sort(runner, frame.time);
-        run(runner, engine, &Frame { steps: if seeing.is_empty() { frame.steps } else { &left }, ..*frame })
+        run(runner, engine, &Frame { steps: if turns.is_empty() { frame.steps } else { &left }, ..*frame })
     }
 
-    /// One step of `plan.steps[index]`, with what comes before it in the program.
+    /// So many steps of `plan.steps[index]`, with what comes before them in the program; meshes are where they are in
+    /// the last one.
     fn step(
         &mut self,
         engine: &Engine,
         runner: &mut Runner,
         frame: &Frame<'_>,
-        index: usize,
+        (index, count): (usize, u32),
     ) -> Result<(), Diagnostics> {
         let steps = &runner.plan().steps[index];
-        let done = runner.steps_done()[index];
-        let time_s = steps.rate.map_or(frame.time, |rate| (done + 1) as f64 / rate);
+        let done = runner.steps_done()[index] + u64::from(count);
+        let time_s = steps.rate.map_or(frame.time, |rate| done as f64 / rate);
         let end = steps.passes.end;
         let is_asked = |pass: usize| frame.only.is_none_or(|only| only.get(pass) != Some(&false));
         let only: Vec<bool> = (0..runner.plan().passes.len()).map(|pass| pass < end && is_asked(pass)).collect();
-        let mut one = vec![0; runner.plan().steps.len()];
-        one[index] = 1;
+        let mut some = vec![0; runner.plan().steps.len()];
+        some[index] = count;
         self.move_to(engine, runner, time_s)?;
-        runner.advance(engine, &Frame { steps: &one, only: Some(&only), ..*frame })
+        runner.advance(engine, &Frame { steps: &some, only: Some(&only), ..*frame })
     }
 
-    /// The `Steps` at a rate in which a pass reads where animated meshes are, in program order.
-    fn seeing_steps(&self, plan: &Plan) -> Vec<usize> {
+    /// The `Steps` at a rate in which a pass reads where animated meshes are, and those before them, in program order;
+    /// with each whether it does.
+    fn turns(&self, plan: &Plan) -> Vec<(usize, bool)> {
         let moves = |object: &ObjectRef| match object {
             ObjectRef::Fixed(id) => self.is_moving(&plan.objects[*id]),
             ObjectRef::Ring { .. } => false,
@@ -74,9 +76,13 @@ impl Moving<'_> {
             let passes = plan.passes.get(steps.passes.clone()).unwrap_or_default();
             steps.rate.is_some() && passes.iter().flat_map(|pass| &pass.accesses).any(|access| moves(&access.object))
         };
-        let mut seeing: Vec<usize> = (0..plan.steps.len()).filter(sees).collect();
-        seeing.sort_by_key(|index| plan.steps[*index].passes.start);
-        seeing
+        if !(0..plan.steps.len()).any(|index| sees(&index)) {
+            return Vec::new();
+        }
+        let mut turns: Vec<(usize, bool)> = (0..plan.steps.len()).map(|index| (index, sees(&index))).collect();
+        turns.sort_by_key(|(index, _)| plan.steps[*index].passes.start);
+        turns.truncate(turns.iter().rposition(|(_, sees)| *sees).map_or(0, |last| last + 1));
+        turns
     }
 
     fn is_moving(&self, object: &Object) -> bool {

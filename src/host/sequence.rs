@@ -9,8 +9,7 @@ use std::sync::Arc;
 
 use super::assets::Particles;
 use super::draw::Moment;
-use crate::diagnostic::{Code, Diagnostic, Diagnostics};
-use crate::plan::model::{Plan, Steps, Unit};
+use crate::diagnostic::{Code, Diagnostic};
 use crate::scene::particles::Taken;
 use crate::scene::sequence::Pattern;
 
@@ -155,25 +154,6 @@ impl Frames {
             _ => None,
         }
     }
-}
-
-/// Steps that lead up to a picture by itself all see the particles of the picture's frame, which is told.
-pub fn not_in_steps(plan: &Plan, tracks: &[Track]) -> Diagnostics {
-    let mut found = Diagnostics::new();
-    for track in tracks.iter().filter(|track| track.frames.moves()) {
-        let sees = |steps: &&Steps| {
-            let stepped = |unit: &&Unit| unit.passes.iter().any(|pass| steps.passes.contains(pass));
-            plan.units.iter().filter(stepped).any(|unit| unit.causes.inputs.contains(&track.input))
-        };
-        if let Some(steps) = plan.steps.iter().find(sees) {
-            let (input, path) = (&track.input, &steps.path);
-            let message = format!("all of `{path}` sees the particles `{input}` of the picture's frame");
-            let hint =
-                "steps do not see each frame's file yet: what they remember is as if this file had always been there";
-            found.push(Diagnostic::warning(Code::ASSET_NOTE, message).hint(hint));
-        }
-    }
-    found
 }
 
 /// A fault of a frame that does not end the sequence, since another is shown in its place.

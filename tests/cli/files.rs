@@ -1,5 +1,6 @@
 //! Files with another unit, another axis up, and other names.
 
+use super::stepping::SHOW_SUM;
 use super::{Project, good, has_adapter, picture, project_of, refused};
 
 /// Dots in metres, y up, and the same in millimetres, z up.
@@ -208,41 +209,4 @@ fn foam_that_begins_later_is_empty_until_then() {
     assert!(!counts(&["--time", "9"]).1.contains("beyond"), "the scene's end");
     // One for the liquid and one for the foam.
     assert_eq!(counts(&["--frame", "9"]).1.matches("frame 9 is beyond").count(), 2);
-}
-
-const SUM: &str = "var<storage, read_write> sum: array<f32>;\n\
-    var<storage, read> particles_mass: array<f32>;\n\
-    @compute @workgroup_size(1) fn main() { sum[0] += particles_mass[0]; }";
-const SHOW_SUM: &str = "var<storage, read> sum: array<f32>;\n\
-    @fragment fn main() -> @location(0) vec4f { return vec4f(sum[0]); }";
-
-#[test]
-fn steps_see_the_sequence_at_the_pictures_frame_and_that_is_told() {
-    if !has_adapter() {
-        return;
-    }
-    let declarations = "inputs: {\"particles\": Particles(attributes: [\"position\", \"mass\"])}, \
-        state: {\"sum\": Buffer(items: 1)}, resources: {PICTURE},";
-    let passes = "Steps(name: \"add\", rate: 1.0, passes: [Compute(shader: \"sum.wgsl\", groups: 1)]),";
-    let project = project_of(passes, declarations, &[("sum", SUM), ("show", SHOW_SUM)]);
-    for frame in 0..4 {
-        project.write(&format!("p_{frame}.csv"), format!("x,y,z,mass\n0,0,0,{}\n1,0,0,0\n", 10_u32.pow(frame)));
-    }
-    let scene = |frames: &str| {
-        let particles = format!("\"particles\": (file: \"../p_#.csv\", radius: 0.1, rate: 1.0{frames})");
-        project.write("scenes/it.ron", format!("Scene(graph: \"it.ron\", size: (16, 8), particles: {{{particles}}})"));
-        let run = good(project.run(&["render", "scenes/it.ron", "-o", "a.png", "--frame", "2", "--dump", "sum=s.csv"]));
-        let sum: f32 = project.text("s.csv").lines().nth(1).unwrap().parse().unwrap();
-        (sum, run.stderr)
-    };
-    let (sum, said) = scene("");
-    // Two steps, both with frame 2's hundred. (A scene may name files outside of its folder.)
-    assert_eq!(sum, 200.0);
-    assert!(
-        said.contains("warning[asset-note]: all of `add` sees the particles `particles` of the picture's frame"),
-        "{said}"
-    );
-    // Where there is one file only there is nothing to tell.
-    let (_, said) = scene(", frames: (2, 2)");
-    assert!(!said.contains("asset-note"), "{said}");
 }

@@ -96,6 +96,7 @@ fn main() -> ExitCode {
         meshes::what_turns_inside_out_on_its_way_stays_seen,
         meshes::what_blends_goes_from_back_to_front,
         meshes::steps_see_meshes_move,
+        meshes::steps_before_those_that_see_meshes_are_done_before,
         meshes::bounds_cover_animations,
         meshes::scenes_without_particles_are_dry,
         meshes::an_even_sky_makes_white_things_as_bright_as_it,

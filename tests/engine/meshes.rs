@@ -354,6 +354,31 @@ pub fn steps_see_meshes_move(_: &mut Engine) {
     assert_eq!(at("animation: None", 1.25), (0.0, 12.0));
 }
 
+/// Steps that come earlier in the program are done before those that see meshes move.
+pub fn steps_before_those_that_see_meshes_are_done_before(_: &mut Engine) {
+    let graph = r#"Graph(
+        inputs: { "meshes": Meshes },
+        state: { "sum": Buffer(items: 2), "ticks": Buffer(items: 1) },
+        resources: { "color": Texture(format: Rgba32Float, size: "viewport") },
+        passes: [
+            Steps(name: "tick", rate: 20, passes: [Compute(shader: "tick.wgsl", groups: 1)]),
+            Steps(name: "add", rate: 10, passes: [Compute(shader: "add.wgsl", groups: 1)]),
+            Fullscreen(shader: "show.wgsl", color: ["color"]),
+        ],
+        outputs: ["color"],
+    )"#;
+    let tick =
+        "var<storage, read_write> ticks: array<f32>;\n@compute @workgroup_size(1) fn tick() { ticks[0] += 1.0; }";
+    let add = ADD.replace("sum[1] += 1.0", "sum[1] += ticks[0]") + "\nvar<storage, read> ticks: array<f32>;\n";
+    let rest = r#", "animations": [{ "samplers": [{ "input": 3, "output": 4 }],
+        "channels": [{ "sampler": 0, "target": { "node": 0, "path": "translation" } }] }]"#;
+    let files = files(graph.to_owned(), scene(r#"(file: "moving.gltf", loop: false)"#));
+    let files = files.with("moving.gltf", square("", r#", "translation": [0, 0, 0]"#, rest));
+    let files = files.with("add.wgsl", &*add).with("tick.wgsl", tick).with("show.wgsl", SHOW);
+    let [_, ticks, ..] = seen(&files, Moment::at_time(0.55), &[[0.0, 0.0]])[0];
+    assert_eq!(ticks, 5.0 * 11.0, "five steps, each after all of the other eleven");
+}
+
 /// The bounds are those of all places that animations take bodies to.
 pub fn bounds_cover_animations(_: &mut Engine) {
     let graph = r#"Graph(

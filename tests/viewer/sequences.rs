@@ -174,3 +174,52 @@ fn a_recording_writes_what_render_would() {
     }
     assert!(!desk.project.path("a_13.png").exists());
 }
+
+/// A graph that adds up what the steps saw, of files that show for a second each.
+fn adding(rate: f64) -> Project {
+    let project = Project::new();
+    for frame in 0..4 {
+        project.write(&format!("scenes/assets/p_{frame}.csv"), format!("x,y,z,mass\n0,0,0,{}\n", 3_u32.pow(frame)));
+    }
+    let sum = "var<storage, read_write> sum: array<f32>;\nvar<storage, read> particles_mass: array<f32>;\n\
+        @compute @workgroup_size(1) fn main() { sum[0] += particles_mass[0]; }";
+    let show = "var<storage, read> sum: array<f32>;\n\
+        @fragment fn main() -> @location(0) vec4f { return vec4f(vec3f(sum[0] / 200.0), 1.0); }";
+    project.write("shaders/sum.wgsl", sum);
+    project.write("shaders/show.wgsl", show);
+    project.write(
+        "graphs/adding.ron",
+        format!(
+            "Graph(inputs: {{\"particles\": Particles(attributes: [\"position\", \"mass\"])}}, \
+             state: {{\"sum\": Buffer(items: 1)}}, \
+             resources: {{\"picture\": Texture(format: Rgba16Float, size: \"viewport\")}}, \
+             passes: [Steps(rate: {rate:?}, passes: [Compute(shader: \"sum.wgsl\", groups: 1)]), \
+             Fullscreen(shader: \"show.wgsl\", color: [\"picture\"])], outputs: [\"picture\"])"
+        ),
+    );
+    let particles = "\"particles\": (file: \"assets/p_#.csv\", radius: 0.1, rate: 1.0)";
+    project.write(SCENE, format!("Scene(graph: \"adding.ron\", size: (16, 8), particles: {{{particles}}})"));
+    project
+}
+
+/// Steps that lie between two pictures see the files that showed at their own time.
+#[test]
+fn steps_see_the_files_of_their_time() {
+    if !has_adapter() {
+        return;
+    }
+    for rate in [1.0, 3.0, 8.0] {
+        let mut desk = Desk::of(adding(rate));
+        desk.rest();
+        for frame in 1..=3_u64 {
+            desk.core.act(Action::Step(1));
+            desk.rest();
+            assert_eq!(desk.core.state.clock.frame(), frame);
+            let picture = desk.picture();
+            assert!(
+                picture == desk.fresh_with(&["--frame", &frame.to_string()]),
+                "frame {frame}, {rate} steps a second"
+            );
+        }
+    }
+}

@@ -94,13 +94,9 @@ fn draw(case: &Case, args: &TestArgs, sources: &mut Sources, cache: &mut Cache) 
     let content = loaded.content.ok_or(loaded.diagnostics)?;
     let mut session = Session::new(opening.wait()?);
     session.build(content)?;
-    let tracks = session.tracks().to_vec();
     let mut found = Diagnostics::new();
-    if !tracks.is_empty() {
-        let inputs = Player::new(&tracks, case.job.when, DiskFiles).inputs(case.job.when, &mut found);
-        session.feed(inputs)?;
-    }
-    session.draw(case.job.when.moment(tracks.first()), case.picture.is_some())?;
+    let mut player = Player::new(session.tracks(), case.job.when, DiskFiles);
+    session.draw_at(case.job.when, &mut player, case.picture.is_some())?;
     if !case.stats.is_empty() {
         let told = session.statistics()?;
         case.stats.iter().filter_map(|bounds| outside(case, bounds, &told)).for_each(|fault| found.push(fault));

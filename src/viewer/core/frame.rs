@@ -10,7 +10,7 @@ use crate::host::Live;
 use crate::scene::Camera;
 
 /// Steps of simulations that run in one frame while time plays, and while it catches up.
-const MOST_STEPS: [u32; 2] = [4, 32];
+pub(super) const MOST_STEPS: [u32; 2] = [4, 32];
 
 /// What a frame was made of, to tell whether the next one would differ.
 #[derive(Clone, Debug, PartialEq)]

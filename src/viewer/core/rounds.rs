@@ -1,8 +1,10 @@
 //! What the worker made of the files: content, a plan that is built, and what was wrong.
 
+use std::mem;
 use std::time::{Duration, Instant};
 
 use super::Core;
+use super::frame::MOST_STEPS;
 use crate::diagnostic::Severity;
 use crate::engine::any_device_gone;
 use crate::host::{Built, Content, Input};
@@ -18,7 +20,7 @@ impl Core {
         if is_last {
             self.state.busy = None;
         }
-        self.answered = when;
+        let shown = mem::replace(&mut self.answered, when);
         if planned.is_none() && diagnostics.is_empty() {
             return;
         }
@@ -28,6 +30,11 @@ impl Core {
         let began = Instant::now();
         let mut built = None;
         if let Some(planned) = planned {
+            if shown != when && cause == Cause::Wanted {
+                // Steps that lie before the new files' time see those that were there until then.
+                let ended = self.session.end_steps(shown, when, MOST_STEPS[1], self.only().as_deref());
+                ended.unwrap_or_else(|found| diagnostics.extend(found));
+            }
             match self.session.install(*planned) {
                 Ok(made) => {
                     self.installed(&made);
