@@ -43,12 +43,17 @@ impl Session {
         self.plan().is_some_and(|plan| plan.steps.iter().any(|steps| sees(plan, steps, self.tracks())))
     }
 
-    /// Does the steps that see the files of `shown` and were not done yet when those of `next` take their place: at most
-    /// so many of each `Steps`. For windows, which draw what is due now and then.
+    /// Whether steps at a rate do, which count what was left out.
+    pub fn timed_steps_see_files(&self) -> bool {
+        self.plan().is_some_and(|plan| stepping(plan, self.tracks()).next().is_some())
+    }
+
+    /// Does the steps that see the files of `shown` and were not done yet when those of `next` take their place. For
+    /// windows, which draw what is due now and then.
     ///
     /// # Errors
     /// If the device refuses something or is lost.
-    pub fn end_steps(&mut self, shown: When, next: When, most: u32, only: Option<&[bool]>) -> Result<(), Diagnostics> {
+    pub fn end_steps(&mut self, shown: When, next: When, only: Option<&[bool]>) -> Result<(), Diagnostics> {
         let Some(runner) = &self.graph else { return Ok(()) };
         let (plan, tracks) = (runner.plan(), self.tracks());
         let end_s = next.moment(tracks.first()).time_s;
@@ -62,8 +67,8 @@ impl Session {
                 seen.all(|track| track.frames.frame(When::Time(time_s)) == track.frames.frame(shown))
             };
             let is_due = |step: &u64| time(*step) <= end_s && sees_shown(time(*step));
-            let count = (done + 1..).take(most as usize).take_while(is_due).count() as u64;
-            turns.push((Turn { index, count: count as u32, at: None }, time(done + count)));
+            let count = (done + 1..).zip(0..u32::MAX).take_while(|(step, _)| is_due(step)).count() as u32;
+            turns.push((Turn { index, count, at: None }, time(done + u64::from(count))));
         }
         for (turn, time_s) in turns.into_iter().filter(|(turn, _)| turn.count > 0) {
             self.run_turn(turn, When::Time(time_s).moment(self.tracks().first()), only)?;

@@ -69,6 +69,10 @@ pub struct Core {
     answered: When,
     /// The last time whose frame of sequences was there.
     fed_s: f64,
+    /// Steps at a rate see the files of sequences.
+    is_led: bool,
+    /// For their sake, files before those that are wanted are shown.
+    leads: bool,
     /// The first picture after a reload is on its way.
     reload_pending: bool,
     /// What files say now came to nothing.
@@ -118,6 +122,8 @@ impl Core {
             advanced: None,
             answered: When::Start,
             fed_s: 0.0,
+            is_led: false,
+            leads: false,
             reload_pending: false,
             is_load_bad: false,
             screen_changed: false,
@@ -187,7 +193,7 @@ impl Core {
         self.state.viewpoints = viewpoints::load(&job.source);
         let repeats = self.state.clock.repeats;
         self.state.clock = super::clock::Clock { repeats, ..super::clock::Clock::default() };
-        (self.answered, self.fed_s) = (When::Start, 0.0);
+        (self.answered, self.fed_s, self.leads) = (When::Start, 0.0, false);
         self.reopen(job);
     }
 
@@ -279,10 +285,10 @@ impl Core {
 
     fn send_wants(&mut self, now: Instant, tick: &mut Tick) {
         self.wants.params.clone_from(&self.state.overrides);
-        let looked_at = self.state.look.iter().map(|look| look.path.clone());
         if !self.is_fed() {
-            self.wants.when = self.state.clock.when();
+            self.wants.when = self.next_when();
         }
+        let looked_at = self.state.look.iter().map(|look| look.path.clone());
         self.wants.stats = self.state.counts;
         self.wants.roots = looked_at.filter(|path| self.can_be_root(path)).collect();
         if self.wants == self.sent {

@@ -221,5 +221,18 @@ fn steps_see_the_files_of_their_time() {
                 "frame {frame}, {rate} steps a second"
             );
         }
+        // A jump, back and on, goes through all of them.
+        for frame in [1, 3, 0, 2] {
+            go_to(&mut desk, frame);
+            let picture = desk.picture();
+            assert!(picture == desk.fresh_with(&["--frame", &frame.to_string()]), "to {frame}, {rate} steps a second");
+        }
+        let path = desk.project.path("a_#.png");
+        desk.core.act(Action::Record(Recording { path, from: 2, to: 3, next: 2 }));
+        desk.until("the end of the recording", |core| core.state.recording.is_none());
+        for frame in [2_u64, 3] {
+            let recorded = std::fs::read(desk.project.path(&format!("a_{frame}.png"))).unwrap();
+            assert!(recorded == desk.fresh_with(&["--frame", &frame.to_string()]), "recorded {frame}");
+        }
     }
 }

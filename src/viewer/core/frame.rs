@@ -6,11 +6,11 @@ use std::time::Instant;
 
 use super::Core;
 use crate::diagnostic::Diagnostics;
-use crate::host::Live;
+use crate::host::{Due, Live, When};
 use crate::scene::Camera;
 
 /// Steps of simulations that run in one frame while time plays, and while it catches up.
-pub(super) const MOST_STEPS: [u32; 2] = [4, 32];
+const MOST_STEPS: [u32; 2] = [4, 32];
 
 /// What a frame was made of, to tell whether the next one would differ.
 #[derive(Clone, Debug, PartialEq)]
@@ -49,6 +49,19 @@ impl Core {
         clock.frame_of(self.answered) == clock.frame() || clock.beat.last.is_none()
     }
 
+    /// What is asked for of sequences. Where steps see the files of their own times, that is one frame after the
+    /// other, from the first on if time goes back.
+    pub(super) fn next_when(&mut self) -> When {
+        let clock = &self.state.clock;
+        let (shown, wanted) = (clock.frame_of(self.answered), clock.frame());
+        if !self.is_led {
+            return clock.when();
+        }
+        let next = if wanted > shown { shown + 1 } else { clock.beat.first };
+        self.leads |= next != wanted || wanted < shown;
+        When::Frame(next)
+    }
+
     pub(super) fn only(&self) -> Option<Vec<bool>> {
         let off = &self.state.switched_off;
         let plan = self.session.plan().filter(|_| !off.is_empty())?;
@@ -60,12 +73,19 @@ impl Core {
         let (Some(camera), Some(_)) = (self.state.camera, self.session.content()) else { return false };
         let is_fed = self.is_fed();
         if is_fed {
-            self.fed_s = self.state.clock.time_s;
+            (self.fed_s, self.leads) = (self.state.clock.time_s, false);
+        }
+        if self.leads {
+            // What shows on the way to another frame is nobody's picture.
+            return false;
         }
         // Else the frame that is there is drawn on, as the camera moves.
         let made = Made { camera, time_s: self.fed_s, only: self.only(), version: self.version };
         let is_new = self.stepped_s != Some(made.time_s);
-        let mut due = self.session.steps_due(made.time_s, is_new, MOST_STEPS[0]);
+        // Steps that see files wait for them.
+        let may_step = is_fed || !self.is_led;
+        let mut due =
+            if may_step { self.session.steps_due(made.time_s, is_new, MOST_STEPS[0]) } else { Due::default() };
         let catches_up = due.steps.iter().any(|steps| *steps > 0) || due.needs_reset;
         if self.made.as_ref() == Some(&made) && !catches_up {
             return false;

@@ -4,7 +4,6 @@ use std::mem;
 use std::time::{Duration, Instant};
 
 use super::Core;
-use super::frame::MOST_STEPS;
 use crate::diagnostic::Severity;
 use crate::engine::any_device_gone;
 use crate::host::{Built, Content, Input};
@@ -30,10 +29,16 @@ impl Core {
         let began = Instant::now();
         let mut built = None;
         if let Some(planned) = planned {
-            if shown != when && cause == Cause::Wanted {
+            let clock = &self.state.clock;
+            let is_back = clock.frame_of(when) < clock.frame_of(shown);
+            if self.is_led && cause == Cause::Wanted {
                 // Steps that lie before the new files' time see those that were there until then.
-                let ended = self.session.end_steps(shown, when, MOST_STEPS[1], self.only().as_deref());
-                ended.unwrap_or_else(|found| diagnostics.extend(found));
+                let done = match is_back {
+                    true => self.session.reset().map_err(Into::into),
+                    false if shown == when => Ok(()),
+                    false => self.session.end_steps(shown, when, self.only().as_deref()),
+                };
+                done.unwrap_or_else(|found| diagnostics.extend(found));
             }
             match self.session.install(*planned) {
                 Ok(made) => {
@@ -104,6 +109,7 @@ impl Core {
         self.version += 1;
         self.state.memory_bytes = built.memory_bytes;
         self.state.changes_over_time = self.session.changes_over_time();
+        self.is_led = self.session.timed_steps_see_files();
         self.state.clock.follow(Beat::of(self.session.tracks().first()));
         self.state.bounds = self.session.content().and_then(bounds);
         let mut inputs = self.session.content().into_iter().flat_map(|content| content.inputs.values());
