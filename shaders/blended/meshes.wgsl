@@ -10,5 +10,5 @@ fn place(in: Corner) -> Vertex {
 
 @fragment
 fn shade(in: Vertex, @builtin(front_facing) is_front: bool) -> Shown {
-    return in_liquid(lit_mesh(in, is_front), in.clip);
+    return in_liquid(lit_mesh(in, is_front, through_water(in.world)), in.clip);
 }

@@ -9,5 +9,5 @@ fn place(in: Corner) -> Vertex {
 
 @fragment
 fn shade(in: Vertex, @builtin(front_facing) is_front: bool) -> @location(0) vec4f {
-    return lit_mesh(in, is_front);
+    return lit_mesh(in, is_front, through_water(in.world));
 }
