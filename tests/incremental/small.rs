@@ -6,7 +6,7 @@ use meniscus::plan::changes::{Cause, Reason};
 use meniscus::plan::model::{InputInfo, ObjectRef, PassKind, Plan, Slot, Texture};
 use wgpu::TextureUsages;
 
-use crate::planning::{Test, object};
+use crate::planning::{Test, object, texture};
 
 struct Now {
     time: f64,
@@ -139,16 +139,8 @@ fn filtered() -> Plan {
         passes: [ Fullscreen(name: "look", shader: "filter.wgsl", color: ["out"], bind: {"src": "picture"}) ],
         outputs: ["out"],
     )"#;
-    let picture = Texture {
-        format: wgpu::TextureFormat::Rgba16Float,
-        width: 8,
-        height: 8,
-        layers: 1,
-        is_3d: false,
-        mips: 1,
-        samples: 1,
-        usages: TextureUsages::TEXTURE_BINDING | TextureUsages::RENDER_ATTACHMENT,
-    };
+    let usages = TextureUsages::TEXTURE_BINDING | TextureUsages::RENDER_ATTACHMENT;
+    let picture = Texture { usages, ..texture(wgpu::TextureFormat::Rgba16Float) };
     Test::new(graph).input("picture", InputInfo::Texture(picture)).plan()
 }
 
